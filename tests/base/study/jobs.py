@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import signal
-import threading
 from pathlib import Path
 from typing import Any
 
@@ -46,39 +45,13 @@ def done(folder: Path) -> list[int]:
     return sorted(int(line) for line in path.read_text().split()) if path.exists() else []
 
 
-def hang_first(seed: int, folder: str, count: int) -> dict[str, Any]:
-    """The first time it tells who has it, through the pipe `who`, and never ends."""
-    try:
-        os.close(os.open(Path(folder) / "first", os.O_CREAT | os.O_EXCL))
-    except FileExistsError:
-        return draw(seed, count)
-    (Path(folder) / "who").write_text(f"{os.getpid()}\n")
-    threading.Event().wait()
-    raise AssertionError("nothing sets the event")
-
-
-def kill_who_hangs(folder: Path) -> threading.Thread:
-    """Make the pipe `who`, and kill whoever writes there. The thread ends then."""
-    pipe = folder / "who"
-    os.mkfifo(pipe)
-
-    def kill() -> None:
-        process = int(pipe.read_text())
-        (folder / "killed").write_text(str(process))
-        os.kill(process, signal.SIGKILL)
-
-    thread = threading.Thread(target=kill)
-    thread.start()
-    return thread
-
-
-def killed(folder: Path) -> int:
-    """Who was killed."""
-    return int((folder / "killed").read_text())
-
-
-def die(seed: int) -> None:
-    os.kill(os.getpid(), signal.SIGKILL)
+def die_first(seed: int, folder: str) -> int:
+    """The first time its worker is killed."""
+    path = Path(folder) / "died"
+    if not path.exists():
+        path.touch()
+        os.kill(os.getpid(), signal.SIGKILL)
+    return seed
 
 
 def fail(seed: int) -> None:

@@ -1,14 +1,8 @@
-"""A study gives the same on every executor and after every kill; in whatever order its tasks end: test_any_order."""
+"""A study gives the same on every executor and goes on from what is done. Ctrl-C and its processes: tests/optimise."""
 
 from __future__ import annotations
 
-import contextlib
 import multiprocessing
-import os
-import select
-import signal
-import subprocess
-import sys
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
@@ -17,9 +11,8 @@ import numpy as np
 import pytest
 
 from greywhale.base.errors import UserError
-from greywhale.base.study import LocalWorkers, LostTasks, SerialWorkers, Task, TaskFailed, run_study
+from greywhale.base.study import LocalWorkers, SerialWorkers, Task, TaskFailed, run_study
 from tests.base.study import jobs
-from tools import ROOT
 
 SOME = jobs.draws(6)
 
@@ -78,44 +71,17 @@ def test_no_tasks_give_no_results(tmp_path: Path) -> None:
     assert run_study([], SerialWorkers(), tmp_path / "r") == {}
 
 
-# --- lost workers ---------------------------------------------------------------------------------------------------
-
-
 @pytest.mark.slow
-def test_what_a_killed_process_had_is_done_again(tmp_path: Path, serial: dict[str, Any]) -> None:
-    killer = jobs.kill_who_hangs(tmp_path)
-    hanging = Task("draw 2", jobs.hang_first, 2, {"folder": str(tmp_path), "count": 42})
-    found = run_study([hanging if task.seed == 2 else task for task in SOME], LocalWorkers(2))
-    killer.join()
-    assert same(found, serial)
-
-
-@pytest.mark.slow
-def test_a_task_that_kills_three_workers_is_given_up_and_no_other(tmp_path: Path) -> None:
-    others = jobs.notes(5, tmp_path)
-    tasks = [*others[:2], Task("deadly", jobs.die, 0), *others[2:]]
-    told = r"task 'deadly' was given up, because every worker that did it ended"
-    with pytest.raises(LostTasks, match=told) as lost:
-        run_study(tasks, LocalWorkers(2), tmp_path / "r")
-    assert lost.value.results == {f"note {seed}": seed * seed for seed in range(5)}
-    assert list(lost.value.results) == [task.key for task in others]
+def test_a_lost_worker_ends_the_study_which_goes_on_from_what_is_done(tmp_path: Path) -> None:
+    notes = jobs.notes(3, tmp_path)
+    deadly = [*notes, Task("last", jobs.die_first, 0, {"folder": str(tmp_path)})]
+    with pytest.raises(UserError, match=r"a worker ended .* its task is among 'last'\. Start .* again") as lost:
+        run_study(deadly, LocalWorkers(1), tmp_path / "r")
     assert lost.value.__notes__ == [
-        f"5 of 6 tasks are done and kept in {tmp_path / 'r'}; with it the same study goes on."
+        f"3 of 4 tasks are done and kept in {tmp_path / 'r'}; with it the same study goes on."
     ]
-    assert set(jobs.done(tmp_path)) == set(range(5))
-
-
-@pytest.mark.slow
-def test_workers_that_all_end_at_once_are_not_made_for_ever() -> None:
-    with pytest.raises(UserError, match=r"3 times all workers ended before any task was done\."):
-        run_study([Task(f"deadly {n}", jobs.die, n) for n in range(50)], LocalWorkers(2))
-
-
-@pytest.mark.slow
-def test_a_given_executor_that_breaks_ends_the_study_with_a_sentence() -> None:
-    with ProcessPoolExecutor(1, mp_context=multiprocessing.get_context("spawn")) as pool:
-        with pytest.raises(UserError, match="the workers were lost, and this study cannot make new ones"):
-            run_study([Task("deadly", jobs.die, 0)], pool)
+    assert run_study(deadly, LocalWorkers(1), tmp_path / "r") == {"note 0": 0, "note 1": 1, "note 2": 4, "last": 0}
+    assert jobs.done(tmp_path) == [0, 1, 2]
 
 
 # --- errors of a task -----------------------------------------------------------------------------------------------
@@ -159,71 +125,3 @@ def test_a_result_that_is_not_plain_fails() -> None:
 def test_two_tasks_with_one_key_are_refused() -> None:
     with pytest.raises(ValueError, match="2 tasks have the key 'draw 1'"):
         run_study([*SOME, SOME[1]], SerialWorkers())
-
-
-# --- interrupted ----------------------------------------------------------------------------------------------------
-
-SCRIPT = """
-import sys
-from pathlib import Path
-from greywhale.base.study import choose_workers, run_study
-from tests.base.study import jobs
-if __name__ == "__main__":
-    folder, count = Path(sys.argv[1]), int(sys.argv[2])
-    tasks = [*jobs.notes(3, folder), jobs.Task("long", jobs.hang_first, 3, {"folder": str(folder), "count": 5})]
-    tasks += [jobs.Task(f"draw {seed}", jobs.draw, seed, {"count": 5}) for seed in range(3)]
-    found = run_study(tasks, choose_workers(count), folder / "r", lambda *one: print(*one, flush=True))
-    print(*found)
-"""
-
-
-def begin(folder: Path, count: int) -> subprocess.Popen[bytes]:
-    (folder / "study.py").write_text(SCRIPT)
-    return subprocess.Popen(
-        [sys.executable, str(folder / "study.py"), str(folder), str(count)],
-        env={**os.environ, "PYTHONPATH": str(ROOT)},
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        start_new_session=True,
-    )
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(("number", "count"), [(signal.SIGINT, 1), (signal.SIGINT, 2), (signal.SIGKILL, 2)])
-def test_an_interrupted_study_keeps_what_is_done_and_goes_on(
-    tmp_path: Path, number: signal.Signals, count: int
-) -> None:
-    """SIGINT as from a terminal, to all processes of the study; SIGKILL to the first one alone."""
-    os.mkfifo(tmp_path / "who")
-    running = begin(tmp_path, count)
-    ends = []
-    try:
-        (tmp_path / "who").read_text()  # now a task hangs
-        assert running.stdout is not None
-        kept = 3 if count == 1 else 6
-        while f"working {kept / 7}\n".encode() not in running.stdout.readline():
-            assert running.poll() is None
-        children = Path(f"/proc/{running.pid}/task/{running.pid}/children").read_text().split()
-        ends = [os.pidfd_open(int(child)) for child in children]
-        if number == signal.SIGINT:
-            os.killpg(running.pid, number)
-        else:
-            running.send_signal(number)
-        _, errors = running.communicate(timeout=120)
-    finally:
-        with contextlib.suppress(ProcessLookupError):
-            running.kill()
-    for end in ends:
-        assert select.select([end], [], [], 60)[0], "a process of the study is still there"
-        os.close(end)
-    assert running.returncode == -number
-    if number == signal.SIGINT:
-        assert errors.count(b"Traceback") == 1, "only the first process answers"
-        assert f"{kept} of 7 tasks are done and kept in {tmp_path / 'r'}; with it".encode() in errors
-    (tmp_path / "who").unlink()
-    again = begin(tmp_path, count)
-    out, errors = again.communicate(timeout=120)
-    assert again.returncode == 0, errors
-    assert out.splitlines()[0] == f"working {kept / 7}".encode()
-    assert out.splitlines()[-1] == b"note 0 note 1 note 2 long draw 0 draw 1 draw 2"
-    assert jobs.done(tmp_path) == [0, 1, 2]

@@ -1,5 +1,5 @@
-// The frame codec against a published value and the golden vectors, and at its ends. What it makes of any bytes is judged
-// in tests/protocol (beside the host's codec) and in firmware/test/attack (by definition).
+// The frame codec against a published value and the golden vectors, and at its ends. What it makes of any bytes is
+// judged in tests/protocol (beside the host's codec) and in firmware/test/attack (by definition).
 #include <doctest/doctest.h>
 
 #include <algorithm>

@@ -9,7 +9,7 @@
   comes back as a list. All random numbers of a task follow from its seed and arguments.
 - `run_study(tasks, executor, results=None, progress=None, about=None, what="working")` returns {key: result} in the
   order of the tasks, whatever the order in which they end, the same bit for bit on every executor and after every
-  resumption. `executor` is any `concurrent.futures.Executor`, or workers that can be made anew when they are lost:
+  resumption. `executor` is any `concurrent.futures.Executor`, or workers:
 
       SerialWorkers()               this process, one task after another
       LocalWorkers(4)               four processes here
@@ -19,8 +19,7 @@
   missing. The file belongs to the version of greywhale, the tasks and `about` (what the study is about, for people:
   a difference is named by its key); another study's file is refused with a UserError.
 - `progress(what, share)` is told after every task.
-- A task whose worker was lost is done again. One that ends its worker three times is given up: when all others are
-  done, `LostTasks` names it (its `results` are those of the others).
+- A worker that ends before its task is done ends the study with a UserError.
 - A function that answers Ctrl-C itself, as `identify` and `tune` do, must raise KeyboardInterrupt where what they gave
   back is not `complete`: half a result is none.
 - A UserError of a task ends the study; so does any other error, as `TaskFailed` with the worker's traceback. Ctrl-C
@@ -28,13 +27,12 @@
 """
 
 from greywhale.base.study.local import LocalWorkers, SerialWorkers, choose_workers
-from greywhale.base.study.run import LostTasks, run_study
+from greywhale.base.study.run import run_study
 from greywhale.base.study.task import Task, TaskFailed
 from greywhale.base.study.workers import Workers
 
 __all__ = [
     "LocalWorkers",
-    "LostTasks",
     "SerialWorkers",
     "Task",
     "TaskFailed",

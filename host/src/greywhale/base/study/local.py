@@ -47,7 +47,6 @@ class LocalWorkers:
     """So many processes on this machine; without a number, one for every processor."""
 
     def __init__(self, count: int | None = None) -> None:
-        # No task waits in a process: those that a process had when it ended are known.
         self.at_once = count or os.cpu_count() or 1
 
     @contextlib.contextmanager

@@ -2,24 +2,15 @@
 
 from __future__ import annotations
 
-import contextlib
-from collections.abc import Iterator
 from concurrent.futures import Executor
-from contextlib import AbstractContextManager
+from contextlib import AbstractContextManager, nullcontext
 from typing import Protocol
-
-from greywhale.base.errors import UserError
-
-# A task that ended its worker so often is given up.
-DEATHS = 3
 
 
 class Workers(Protocol):
-    """Those who do the tasks of a study. `executor()` makes a new one whenever the last one is lost; leaving it after
-    an error ends the workers at once.
+    """Those who do the tasks of a study; leaving `executor()` after an error ends them at once.
 
-    `at_once` is how many tasks they are given at a time, None for all. A future whose worker ended has a
-    `BrokenExecutor`, or is cancelled.
+    `at_once` is how many tasks they are given at a time, None for all.
     """
 
     @property
@@ -34,11 +25,7 @@ class Given:
     at_once = None
 
     def __init__(self, executor: Executor) -> None:
-        self._executor: Executor | None = executor
+        self._executor = executor
 
-    @contextlib.contextmanager
-    def executor(self) -> Iterator[Executor]:
-        executor, self._executor = self._executor, None
-        if executor is None:
-            raise UserError("the workers were lost, and this study cannot make new ones.")
-        yield executor
+    def executor(self) -> AbstractContextManager[Executor]:
+        return nullcontext(self._executor)
