@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from tools.attack.arm_faults import CHATTER, Trial, faults
-from tools.attack.part import Row, add_up
-from tools.attack.parts.faults import count, is_violation, run
+from tools.attack.arm_faults import CHATTER, faults
+from tools.attack.part import add_up
+from tools.attack.parts.faults import run
 
 RAILS = {"open": "pot_low", "shorted": "pot_high"}
 # What the board may say of each; a joint that nobody moves shows nothing.
@@ -61,15 +61,3 @@ def test_each_fault_of_motion_is_found_when_the_joint_moves() -> None:
 def test_what_tune_knows_of_the_arm_has_a_row_of_its_own() -> None:
     rows = [run({"board": "mega", "seed": seed, "trials": 1, "faults": ["follower frozen"]})[0] for seed in (4, 5)]
     assert [row.tried.partition(", ")[2] for row in rows] == ["travel unknown", "travel known"]
-
-
-def test_motors_that_stay_on_or_go_off_late_or_an_error_that_grows_are_violations() -> None:
-    assert is_violation("stop request", Trial(None, 0.0, 0.0, "none", 255))
-    assert is_violation("stop request", Trial(10.1, 0.0, 0.0, "none", 255))
-    assert not is_violation("hang, interrupts off", Trial(16.0, 0.0, 0.0, "watchdog", 255))
-    assert is_violation("follower frozen", Trial(5.0, 0.6, 0.0, "tracking", 1))
-    assert is_violation("motor reversed", Trial(None, 0.2, 0.6, "none", 255))
-    assert not is_violation("joint blocked", Trial(None, 0.9, 0.0, "none", 255)), "the leader alone has moved"
-    assert count("nano", "stop request", Trial(None, 0.0, 0.0, "none", 255)) == Row(
-        "nano: stop request", 1, 1, {"motors stayed on": 1}, {"rad": 0.0}
-    )
