@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import io
-import threading
 
 import pytest
 from rich.console import Console
 from rich.live import Live
 
-from greywhale.cli.display import EVERY_S, Frame, Lines, Running, repeated
+from greywhale.cli.display import EVERY_S, Frame, Lines, Running
 
 ERASE = "\x1b[2K"
 STEPS = [f"round {number}: {what}" for number in range(1, 11) for what in ("recording", "global search", "tuning")]
@@ -93,15 +92,6 @@ def test_a_pipe_gets_a_line_for_each_step_and_one_every_30_s() -> None:
     ]
 
 
-def test_where_the_steps_are_told_already_a_pipe_gets_the_rest() -> None:
-    time, said = Time(), list[str]()
-    lines = Lines(said.append, Running(time), begins=False)
-    lines("link", 0.0)
-    time.now_s = EVERY_S
-    lines.look()
-    assert said == [" 0:30  link: 0 %, 0:30 so far"]
-
-
 def test_nothing_that_a_terminal_would_obey_is_shown() -> None:
     said = list[str]()
     running = Running(Time())
@@ -109,12 +99,3 @@ def test_nothing_that_a_terminal_would_obey_is_shown() -> None:
     console = terminal(80, 24)
     console.print(Frame(running))
     assert not any("\x1b[31m" in text or "\x07" in text for text in (*said, last_frame(console)))
-
-
-def test_a_silent_step_is_looked_at_again_and_again() -> None:
-    """By a thread of its own, until the verb ends."""
-    looked = threading.Semaphore(0)
-    before = threading.active_count()
-    with repeated(looked.release, 0.001):
-        assert all(looked.acquire() for _ in range(3))
-    assert threading.active_count() == before

@@ -34,13 +34,6 @@ def test_verbose_tells_the_steps_on_stderr_and_leaves_stdout_alone(capsys: Captu
     assert "param_get answered: " in more.err
 
 
-def test_without_them_nothing_is_told(capsys: Captured) -> None:
-    with FakeBoard() as board:
-        assert entry.run(["info", "--port", board.port]) == 0
-    assert capsys.readouterr().err == ""
-    assert ROOT.handlers == []
-
-
 @pytest.mark.parametrize("options", [[], ["--log-file", "bug.log"]], ids=["plain", "file"])
 def test_a_warning_always_reaches_the_terminal(
     options: list[str], capsys: Captured, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
@@ -88,16 +81,6 @@ def test_a_file_that_will_not_do_is_refused(name: str, words: str, capsys: Captu
     assert entry.run(["--log-file", str(tmp_path / name), "ports"]) == 2
     assert words in capsys.readouterr().err
     assert (tmp_path / "log.csv").read_text() == "time_s,leader_0\n"
-
-
-def test_a_full_disk_ends_no_command(capsys: Captured) -> None:
-    assert entry.run(["--log-file", "/dev/full", "udev"]) == 0
-    assert capsys.readouterr().err == ""
-
-
-def test_control_characters_reach_no_terminal(capsys: Captured) -> None:
-    assert entry.run(["-v", "evaluate", "\x1b[31mred.csv"]) == 1
-    assert "\x1b" not in capsys.readouterr().err
 
 
 def complete(words: str) -> list[str]:

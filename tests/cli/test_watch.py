@@ -9,7 +9,6 @@ import struct
 import subprocess
 import sys
 import termios
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -17,7 +16,7 @@ import pytest
 from greywhale.board.device import Device
 from greywhale.board.upload import read_parameters
 from greywhale.cli import entry
-from greywhale.cli.watch import EVERY, HEADING, Look, as_line, as_table, looks
+from greywhale.cli.watch import EVERY, HEADING, Look, as_table, looks
 from greywhale.protocol import schema
 from greywhale.protocol.schema import Fault, State
 from tests.board.fake_board import FakeBoard, Faults
@@ -37,26 +36,6 @@ def test_a_table_says_what_there_is() -> None:
     assert lines[4].split() == ["joint", "0", "+1.000", "0", "+0.990", "4", "+0.010", "+1.50"]
     assert lines[7].split() == ["joint", "3", "+0.500", "3", "+0.000", "7", "+0.500", "+0.00"]
     assert "No fault." in lines
-
-
-def test_a_line_has_a_value_for_each_name() -> None:
-    values = dict(zip(HEADING.split(","), as_line(LOOK).split(","), strict=True))
-    assert (values["time_s"], values["state"], values["fault"]) == ("12.300", "following", "none")
-    assert (values["leader_1"], values["error_0"], values["voltage_2"]) == ("-1.000000", "0.010010", "-0.003")
-
-
-def test_a_table_with_the_worst_of_all_fits_a_small_terminal() -> None:
-    sentences = [f"{fault.description}, {fault.remedy}" for fault in Fault]
-    worst = replace(
-        LOOK, port="/run/user/1000/greywhale/mega-123456", fault=max(sentences, key=len),
-        complaints=tuple(max(sentences, key=len) for _ in range(8)), lost=12_345,
-        counts=np.full(8, 1023),
-        sample=replace(SAMPLE, state=State.SOFT_START, tick=4_000_000_000, leader=(-32768,) * 4, voltage=(-32768,) * 4),
-    )  # fmt: skip
-    lines = as_table(worst).splitlines()
-    assert max(map(len, lines)) <= 80
-    assert len(lines) < 24
-    assert "6 more potentiometers are at a rail." in lines
 
 
 def test_in_a_pipe_a_line_each_second_and_at_a_fault(capsys: Captured) -> None:

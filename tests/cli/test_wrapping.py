@@ -14,7 +14,6 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from greywhale.cli import entry
-from greywhale.cli.output import show, tell
 from greywhale.cli.wrapping import fit, wrap
 from tests.cli.test_progress import everything
 
@@ -30,11 +29,6 @@ def test_words_stay_whole_and_none_is_lost(text: str, width: int, hang: int) -> 
         assert len(line) <= width or len(line.split()) <= 1
 
 
-@given(TEXTS, st.integers(200, 300))
-def test_what_fits_stays_as_it_is(text: str, width: int) -> None:
-    assert wrap(text, width) == text
-
-
 def test_a_command_is_copied_from_one_line_where_one_can_hold_it() -> None:
     text = "it is not installed; install it (Debian: `sudo apt-get install avrdude`) and try again."
     assert wrap(text, 40).split("\n") == [
@@ -43,17 +37,6 @@ def test_a_command_is_copied_from_one_line_where_one_can_hold_it() -> None:
         "again.",
     ]
     assert wrap(text, 20).split("\n")[2:4] == ["`sudo apt-get", "install avrdude`)"]
-
-
-def test_what_is_broken_off_stands_below_its_own() -> None:
-    assert wrap("pots  one two three", 12, hang=6) == "pots  one\n      two\n      three"
-    assert wrap("  -> one two three", 12) == "  -> one two\n  three"
-
-
-def test_a_wide_terminal_keeps_tables_and_gives_sentences_a_width_to_read() -> None:
-    words = " ".join(["word"] * 60)
-    assert max(map(len, wrap(words, 200).split("\n"))) <= 120
-    assert wrap(words[:190], 200) == words[:190]
 
 
 def seen_on(width: int, monkeypatch: pytest.MonkeyPatch, stream: str, arguments: list[str]) -> str:
@@ -81,22 +64,6 @@ def test_an_error_is_broken_on_a_terminal_alone(
     text = seen_on(width, monkeypatch, "stderr", arguments)
     assert max(map(len, text.splitlines())) <= width
     assert text.split() == whole.split()
-
-
-def test_results_and_notes_are_broken_too(monkeypatch: pytest.MonkeyPatch) -> None:
-    seen, inner = pty.openpty()
-    termios.tcsetwinsize(inner, (24, 40))
-    with os.fdopen(inner, "w", encoding="utf-8") as terminal:
-        monkeypatch.setattr(sys, "stdout", terminal)
-        monkeypatch.setattr(sys, "stderr", terminal)
-        show(False, {}, "pots  a potentiometer reads at the lower rail", hang=6)
-        tell("Warning: the tuning of this controller is not finished.")
-    assert everything(seen).splitlines() == [
-        "pots  a potentiometer reads at the lower",
-        "      rail",
-        "Warning: the tuning of this controller",
-        "is not finished.",
-    ]
 
 
 def test_a_terminal_that_does_not_say_its_width_is_a_usual_one() -> None:

@@ -1,18 +1,16 @@
-"""The picture: the same logs give the same bytes, and what is drawn is what was measured."""
+"""The picture of following: what is drawn is what was measured, and nothing overlaps."""
 
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
 
-from greywhale.base.errors import UserError
 from greywhale.files.log import Log
 from greywhale.files.log.layout import Origin
 from greywhale.pictures import follow, looks
-from greywhale.pictures.follow import Trace, draw_following, trace
+from greywhale.pictures.follow import Trace, trace
 from greywhale.pictures.page import style
 from greywhale.protocol.table import ParameterTable
 from tests.pictures.sight import faults
@@ -36,13 +34,6 @@ def test_only_the_measured_part_is_drawn_and_starts_at_zero() -> None:
 def labels(traces: list[Trace]) -> list[str]:
     figure = follow.plot_following([replace(one, joints=(0,)) for one in traces], "Title")
     return [text.get_text() for text in figure.legends[0].get_texts()]
-
-
-def test_leaders_of_the_same_motion_are_one_line_and_others_two() -> None:
-    before, after = trace(log(0.8), "before"), trace(log(0.95, seed=2), "after")
-    assert labels([before, after]) == ["leader", "follower, before", "follower, after"]
-    other = Trace("other", before.time, before.leader + 0.2, before.follower, before.mse)
-    assert labels([before, other]) == ["leader, before", "leader, other", "follower, before", "follower, other"]
 
 
 @pytest.mark.parametrize(("late_s", "lines"), [(0.02, ["leader"]), (0.2, ["leader, first", "leader, again"])])
@@ -110,25 +101,6 @@ def test_the_supply_is_known_of_a_log_with_its_parameters_or_with_the_defaults()
     assert trace(replace(log(0.8), origin=Origin(param_crc=default.crc)), "x").supply_v == default.supply_v
     assert trace(replace(log(0.8), origin=Origin(param_crc=default.crc ^ 1)), "x").supply_v is None
     assert trace(log(0.8), "x", 9.0).supply_v == 9.0
-
-
-def test_one_log_has_the_followers_colour_and_two_those_of_before_and_after() -> None:
-    for names, colours in ((["x"], [looks.FOLLOWER]), (["x", "y"], [looks.BEFORE, looks.AFTER])):
-        figure = follow.plot_following([replace(trace(log(0.8), ""), label=name) for name in names], "Title")
-        lines = figure.axes[0].get_lines()
-        assert lines[0].get_color() == looks.LEADER.colour
-        assert [line.get_color() for line in lines[1:]] == [look.colour for look in colours]
-
-
-def test_bad_requests_leave_no_file(tmp_path: Path) -> None:
-    one = trace(log(0.8), "x")
-    with pytest.raises(UserError, match=r"pictures end in \.png, \.svg, \.pdf"):
-        draw_following(tmp_path / "picture.gif", [one], "")
-    with pytest.raises(UserError, match="1 to 4 logs, not 5"):
-        draw_following(tmp_path / "picture.png", [one] * 5, "")
-    with pytest.raises(UserError, match=r"none/picture\.png: cannot be written: no such file"):
-        draw_following(tmp_path / "none" / "picture.png", [one], "")
-    assert list(tmp_path.iterdir()) == []
 
 
 @pytest.mark.slow

@@ -1,4 +1,4 @@
-"""The pictures of an identification: leader, follower, both arms and their errors, in the colours of all pictures."""
+"""The pictures of an identification: nothing is cut off, and only joints in use have a panel."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ from matplotlib.figure import Figure
 
 from greywhale.motion import multi_steps
 from greywhale.pictures import identification as pictures
-from greywhale.pictures import looks
 from greywhale.pictures.page import style
 from tests.pictures.sight import faults
 
@@ -28,20 +27,6 @@ def test_nothing_is_cut_off_overlaps_or_lacks_a_unit(name: str) -> None:
         costs = tuple(0.5 * 0.8**step for step in range(50))
         figure = responses() if name == "responses" else pictures.plot_convergence(costs, "paper-printed")
         assert faults(figure) == []
-
-
-@pytest.mark.parametrize("begun", ["white box", "model before"])
-def test_leader_follower_arms_and_errors_are_drawn(begun: str) -> None:
-    figure = responses(begun)
-    angle, error = figure.axes[:2]
-    words = [text.get_text() for text in figure.legends[0].get_texts()]
-    assert words == ["leader", "recorded follower", begun, "model"]
-    expected = [looks.LEADER, looks.FOLLOWER, looks.WHITE_BOX, looks.MODEL]
-    assert [line.get_color() for line in angle.get_lines()] == [look.colour for look in expected]
-    leader, follower, *simulated = (np.asarray(line.get_ydata()) for line in angle.get_lines())
-    np.testing.assert_allclose(follower, 0.99 * leader)
-    for line, angles in zip(error.get_lines(), simulated, strict=False):
-        np.testing.assert_allclose(np.asarray(line.get_ydata()), follower - angles)
 
 
 @pytest.mark.slow

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import matplotlib
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
@@ -20,7 +19,6 @@ from greywhale.pictures.page import (
     WIDE,
     leave,
     legend_below,
-    make_logarithmic,
     mark_beyond,
     png,
     save,
@@ -37,16 +35,6 @@ def simple() -> Figure:
     axes.set_xlabel("time [s]")
     axes.set_ylabel("angle [rad]")
     return figure
-
-
-def test_the_users_own_settings_change_no_picture() -> None:
-    """Neither those of a notebook nor of a matplotlibrc; afterwards they hold again."""
-    with style():
-        plain = png(simple())
-    with matplotlib.rc_context({"lines.linewidth": 9.0, "savefig.facecolor": "red", "axes.edgecolor": "blue"}):
-        with style():
-            assert png(simple()) == plain
-        assert matplotlib.rcParams["lines.linewidth"] == 9.0
 
 
 def test_a_good_picture_has_no_faults_and_each_fault_is_seen() -> None:
@@ -98,38 +86,6 @@ def test_what_leaves_a_panel_is_marked_in_its_colour_and_nothing_else_is() -> No
     assert marks["^", looks.BEFORE.colour][0] == pytest.approx([2.8, 0.2], abs=0.02)
 
 
-def test_swings_that_leave_a_panel_all_the_time_are_marked_all_along() -> None:
-    x = np.arange(0.0, 10.0, 0.01)
-    _, axes = plt.subplots()
-    axes.plot(x, np.sin(20.0 * x))
-    mark_beyond(axes, 0.2, [(x, np.sin(20.0 * x), looks.BEFORE)])
-    for marks in axes.get_lines()[1:]:
-        at = np.asarray(marks.get_xdata(), dtype=np.float64)
-        assert 8 <= len(at) <= 30
-        assert np.diff(at).max() < 2.0
-
-
-def test_a_panel_that_holds_everything_stays_as_it_is() -> None:
-    _, axes = plt.subplots()
-    x, y = np.array([0.0, 1.0]), np.array([0.0, 0.2])
-    axes.plot(x, y)
-    limits = axes.get_ylim()
-    assert mark_beyond(axes, 0.2, [(x, y, looks.BEFORE)]) == pytest.approx(0.2)
-    assert axes.get_ylim() == limits
-    assert len(axes.get_lines()) == 1
-
-
-@pytest.mark.parametrize("highest", [5.0, 1e9])
-def test_a_logarithmic_axis_has_plain_numbers(highest: float) -> None:
-    figure, axes = plt.subplots(figsize=(COLUMN, 2.5))
-    axes.plot([1.0, 2.0], [0.2, highest])
-    make_logarithmic(axes)
-    figure.canvas.draw()
-    words = [label.get_text() for label in axes.get_yticklabels(which="both") if label.get_text()]
-    assert len(words) >= 3
-    assert all(float(word) > 0.0 for word in words)
-
-
 @pytest.mark.parametrize("kind", KINDS)
 def test_the_same_figure_gives_the_same_file(kind: str, tmp_path: Path) -> None:
     with style():
@@ -165,8 +121,3 @@ def test_what_cannot_be_written_is_refused_and_leaves_nothing(tmp_path: Path) ->
 )
 def test_names_tell_files_apart(files: list[str], names: list[str]) -> None:
     assert distinct_names(files) == names
-
-
-def test_no_two_names_are_the_same() -> None:
-    files = ["a/b/log.csv", "b/log.csv", "log.csv", "log.csv", "b/b/log.csv", "x" * 99 + "1.csv", "x" * 50 + "y1.csv"]
-    assert len(set(distinct_names(files))) == len(files)

@@ -1,31 +1,22 @@
-"""The pictures of a tuning: what is drawn is what was given, nothing overlaps, the same numbers give the same bytes."""
+"""The pictures of a tuning: what is drawn is what was given, and nothing overlaps."""
 
 from __future__ import annotations
 
-from dataclasses import replace
 from functools import cache
-from pathlib import Path
-from types import SimpleNamespace
-from typing import cast
 
-import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from greywhale.base.errors import UserError
 from greywhale.base.types import Controllers, Floats
 from greywhale.files.controller import load
 from greywhale.files.paper_tables import paper_table
 from greywhale.motion import multi_steps
-from greywhale.pictures import looks
 from greywhale.pictures import tuning as pictures
 from greywhale.pictures.page import style
 from greywhale.pictures.tuning import Response
 from greywhale.simulate import controller_row
-from greywhale.tune.report.pictures import draw
-from greywhale.tune.result import TuningResult
 from tests.pictures.sight import faults
 
 
@@ -74,33 +65,6 @@ def test_nothing_is_cut_off_overlaps_or_lacks_a_unit(name: str) -> None:
         assert faults(figure_of(name)) == []
 
 
-def test_sets_that_did_not_change_are_drawn_once_and_said_to_be_unchanged() -> None:
-    figure = figure_of("unchanged sets")
-    assert "unchanged" in figure.get_suptitle()
-    assert [text.get_text() for text in figure.legends[0].get_texts()] == ["NE / NCE", "ZE / ZCE", "PE / PCE"]
-    assert {len(axes.get_lines()) for axes in figure.axes} == {3}
-    assert {line.get_linestyle() for axes in figure.axes for line in axes.get_lines()} == {"-"}
-
-
-def test_a_panel_without_change_says_so_among_others() -> None:
-    before, after = controllers("before_tuning"), controllers("before_tuning").copy()
-    after[2] = controllers("table_10")[2]
-    figure = pictures.plot_sets(before, after)
-    unchanged = ["unchanged" in axes.get_title() for axes in figure.axes]
-    assert unchanged == [True] * 4 + [False] * 2 + [True] * 2
-    assert [len(axes.get_lines()) for axes in figure.axes] == [3] * 4 + [6] * 2 + [3] * 2
-
-
-def test_every_follower_looks_the_same_in_all_panels_and_in_the_legend() -> None:
-    figure = figure_of("responses")
-    shown = [(line.get_color(), line.get_linestyle()) for line in figure.legends[0].get_lines()[:4]]
-    assert shown == [(look.colour, look.style) for look in (looks.LEADER, looks.BEFORE, looks.AFTER, looks.FLOOR)]
-    for whole, error, near in zip(figure.axes[::3], figure.axes[1::3], figure.axes[2::3], strict=True):
-        for axes, expected in ((whole, shown), (error, shown[1:]), (near, shown)):
-            lines = axes.get_lines()[: len(expected)]
-            assert [(line.get_color(), line.get_linestyle()) for line in lines] == expected
-
-
 def test_the_sets_have_their_corners_where_the_board_has_them() -> None:
     figure = figure_of("sets")
     error, change = figure.axes[0], figure.axes[1]
@@ -127,57 +91,6 @@ def test_responses_show_every_follower_its_error_and_its_figure() -> None:
     assert time[0] == whole.get_xlim()[0]
 
 
-def test_convergence_marks_the_last_improvement() -> None:
-    figure = figure_of("convergence")
-    for axes in figure.axes:
-        curve, last = axes.get_lines()
-        at = float(x_of(last)[0])
-        assert x_of(curve)[int(np.argmin(y_of(curve)))] == at
-        assert f"after {at:,.0f} evaluations" in axes.get_title()
-        assert axes.get_yscale() == "log"
-
-
-def test_a_folder_that_cannot_be_made_is_refused(tmp_path: Path) -> None:
-    (tmp_path / "file").write_text("")
-    with pytest.raises(UserError, match="cannot be written"):
-        pictures.draw_sets(tmp_path / "file" / "sets.png", controllers("before_tuning"), controllers("table_9"))
-
-
-@pytest.mark.slow
-def test_a_tuning_gets_all_its_pictures_and_an_unfinished_one_those_there_are(tmp_path: Path) -> None:
-    time, leader, followers = motion()
-    open_ones = plt.get_fignums()
-    before, after, floor = followers.values()
-    held_out = SimpleNamespace(
-        name="human-like reaches",
-        time_s=time,
-        leader=leader,
-        angles_before=before.angles,
-        angles_after=after.angles,
-        mse_before=before.mse,
-        mse_after=after.mse,
-        floor=floor,
-    )
-    outcome = SimpleNamespace(
-        model=SimpleNamespace(arm=SimpleNamespace(joints_in_use=(0, 1, 2, 3))),
-        method="paper",
-        strategy="mf",
-        before=controllers("before_tuning"),
-        after=controllers("table_10"),
-        held_out=(held_out,),
-        curves=(SimpleNamespace(evaluations=(10, 20), cost=(2.0, 1.0)),) * 4,
-    )
-    drawn = draw(cast(TuningResult, outcome), tmp_path / "new" / "folder")
-    assert [path.name for path in drawn] == ["sets.png", "responses_human_like_reaches.png", "convergence.png"]
-    assert all(path.read_bytes().startswith(b"\x89PNG") for path in drawn)
-    outcome.held_out, outcome.curves = (), ()
-    (again,) = draw(cast(TuningResult, outcome), tmp_path)
-    assert again.name == "sets.png"
-    assert again.read_bytes() == drawn[0].read_bytes(), "the same numbers give the same bytes"
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["new", "sets.png"]
-    assert plt.get_fignums() == open_ones
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize("joints", [(2,), (0, 1, 3)])
 def test_only_joints_in_use_have_a_panel(joints: tuple[int, ...]) -> None:
@@ -192,20 +105,3 @@ def test_only_joints_in_use_have_a_panel(joints: tuple[int, ...]) -> None:
             assert faults(figure) == []
             told = " ".join(axes.get_title() + axes.get_title(loc="left") for axes in figure.get_axes())
             assert {joint for joint in range(4) if f"Joint {joint}" in told} == set(joints)
-
-
-def test_the_lowest_panel_of_each_column_has_its_axis() -> None:
-    costs = [(np.arange(10, 310, 10), 1.0 / np.arange(10, 310, 10))] * 4
-    figure = pictures.plot_convergence(costs, "Convergence", pictures.cost_words("default"), (0, 1, 3))
-    assert [axes.get_xlabel() for axes in figure.axes] == ["", "evaluations", "evaluations"]
-    figure.canvas.draw()
-    assert figure.axes[1].xaxis.get_major_ticks()[0].label1.get_visible()
-
-
-def test_an_error_of_an_unused_joint_is_not_spoken_of() -> None:
-    time, leader, followers = motion()
-    still = {
-        name: replace(one, angles=np.hstack([leader[:, :1], one.angles[:, 1:]])) for name, one in followers.items()
-    }
-    figure = pictures.plot_responses(time, leader, still, "Response", (0,))
-    assert not any("beyond" in text.get_text() for text in figure.legends[0].get_texts())

@@ -7,7 +7,6 @@ from pathlib import Path
 
 import matplotlib.pyplot as plt
 import pytest
-from reportlab.pdfbase import pdfmetrics
 
 from greywhale.pictures.page import png
 from greywhale.reproduce.pages import law, system
@@ -17,15 +16,12 @@ from greywhale.reproduce.pages.printed import TABLE_2
 from greywhale.reproduce.pages.tuning import quoted
 from greywhale.reproduce.render.html import write_html
 from greywhale.reproduce.render.pdf import (
-    GOOD_POINTS,
     LEAST_POINTS,
-    MOST_POINTS,
     WIDTH,
     fit_columns,
     register_fonts,
     write_pdf,
 )
-from greywhale.reproduce.render.ranges import keep_ranges
 from tests.reproduce.small import draw_nothing
 
 
@@ -81,40 +77,6 @@ def test_a_long_table_goes_on_over_pages_of_the_pdf(tmp_path: Path) -> None:
     data = write_pdf(small(), tmp_path / "report.pdf").read_bytes()
     assert data.startswith(b"%PDF-")
     assert data.count(b"/Type /Page\n") + data.count(b"/Type /Page ") >= 2
-
-
-def test_a_picture_that_hardly_fits_gets_smaller_instead_of_leaving_a_hole(tmp_path: Path) -> None:
-    figure, axes = plt.subplots(figsize=(6.0, 3.6))
-    axes.plot([0, 1], [1, 0])
-    picture = Picture(png(figure), "Nothing.")
-    pages = []
-    for rows in (1, 6, 30):  # beside so many lines both fit, both fit smaller, and the picture needs another page
-        lines = Code(("x",) * rows)
-        blocks = (picture, lines, picture)
-        chapter = Chapter("One", (Entry("Fig. 1", "A", Status.COMPUTED, blocks),))
-        data = write_pdf(Document("A report", (), (chapter,)), tmp_path / "pictures.pdf").read_bytes()
-        pages.append(data.count(b"/Type /Page\n") + data.count(b"/Type /Page "))
-    assert pages == [1, 1, 2]
-
-
-def test_a_line_breaks_before_a_range_and_not_inside_of_it() -> None:
-    assert keep_ranges("0.1 (0.05 to 0.2) of it") == "0.1 (0.05\xa0to\xa00.2) of it"
-    long = "(a remark in brackets that needs several lines)"
-    assert keep_ranges(long) == long
-
-
-def test_a_wide_table_breaks_its_lines_before_its_letters_get_small() -> None:
-    row = Row("Ne_trapmf_c", ("-0.425 (-0.505 to -0.381)",) * 4 + ("-0.0785",) * 4)
-    points, widths = fit_columns(sheet(("", *("J0, printed",) * 8), [row]))
-    assert points >= GOOD_POINTS - 0.5
-    assert sum(widths) <= WIDTH + 1e-6
-    assert widths[1] > pdfmetrics.stringWidth("(-0.505 to -0.381)", "Body", points)
-
-
-def test_a_table_that_fits_has_large_letters_and_one_line_a_row() -> None:
-    points, widths = fit_columns(sheet(("", "two"), [Row("x", ("1 (0 to 2)",))]))
-    assert points == MOST_POINTS
-    assert widths[1] > pdfmetrics.stringWidth("1 (0 to 2)", "Body", points)
 
 
 def test_a_table_too_wide_for_all_letters_still_fits_the_page() -> None:
