@@ -14,7 +14,7 @@ from scipy.integrate import solve_ivp
 from greywhale import _native
 from greywhale.arm import Arm, ArmParameters
 from greywhale.arm.export import JOINT_IDS, LINK_NAMES, mjcf, urdf
-from greywhale.arm.plants import check_plants, columns, plant_row, rigid_joints
+from greywhale.arm.plants import check_plants, plant_row, rigid_joints
 from greywhale.base.errors import UserError
 from greywhale.files.arm import load_arm
 from greywhale.files.model import arm_toml
@@ -86,18 +86,6 @@ def test_batch_single_run_and_ideal_law_hold_it(make_arm: Any, worn: bool) -> No
     floor = saturation_floor(slices, plant_row(arm))
     np.testing.assert_array_equal(floor.mse[2:], 0.0)
     assert (floor.mse[:2] > 0.0).all()
-
-
-def test_a_batch_beside_rigid_arms_keeps_its_bits(make_arm: Any) -> None:
-    experiment = Experiment(human_reaches(4, 2.0), load_arm("default"), noise=False)
-    plants = np.repeat(plant_row(load_arm("default"))[None], 20, axis=0)
-    alone = experiment.run(None, plants, every=5)
-    mixed = plants.copy()
-    mixed[1::2] = plant_row(with_joints(make_arm, (0, 1, 2)))
-    mixed[1::2, columns("stop_min")[3]] = mixed[1::2, columns("stop_max")[3]] = experiment.home[3]
-    beside = experiment.run(None, mixed, every=5)
-    assert np.ptp(beside.angles[1, :, 3]) == 0.0
-    np.testing.assert_array_equal(beside.angles[::2], alone.angles[::2])
 
 
 def test_windows_hold_it_bit_by_bit(make_arm: Any) -> None:

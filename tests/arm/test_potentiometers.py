@@ -43,15 +43,6 @@ def test_noise_has_its_size_and_independent_channels() -> None:
     assert 0.0455 - 0.006 < (np.abs(readings) > 2000 * noise).mean() < 0.0455 + 0.006  # gaussian: 4.55 % beyond 2 sigma
 
 
-def test_same_seed_same_noise() -> None:
-    def read(seed: int) -> list[list[float]]:
-        pots = Potentiometers(default_arm().leader_pots, seed)
-        return [pots.millivolts(np.zeros(4)).tolist() for _ in range(10)]
-
-    assert read(1) == read(1)
-    assert read(1) != read(2)
-
-
 def test_broken_wires() -> None:
     pots = Potentiometers(default_arm().leader_pots)
     pots.set_wiring(1, Wiring.OPEN)

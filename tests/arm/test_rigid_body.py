@@ -37,30 +37,6 @@ def test_agrees_with_pinocchio(state: dict[str, Any], make_arm: Any) -> None:
     np.testing.assert_allclose(body.bias(state["q"], state["v"]), state["bias"], rtol=0, atol=1e-12)
 
 
-def test_mass_matrix_is_symmetric_and_positive_definite(body: RigidBody) -> None:
-    for q, _ in states():
-        mass = body.mass_matrix(q)
-        np.testing.assert_array_equal(mass, mass.T)
-        assert np.linalg.eigvalsh(mass).min() > 0
-
-
-def test_velocity_terms_do_no_work(body: RigidBody) -> None:
-    """Passivity: the power of the velocity terms is what the changing mass matrix takes, v'(dM/dt / 2) v = v' C."""
-    h = 1e-5
-    for q, v in states():
-        rate = (body.mass_matrix(q + h * v) - body.mass_matrix(q - h * v)) / (2 * h)
-        velocity_terms = body.bias(q, v) - body.bias(q, np.zeros(4))
-        assert 0.5 * v @ rate @ v == pytest.approx(v @ velocity_terms, abs=1e-7)
-
-
-def test_gravity_is_the_slope_of_the_potential_energy(body: RigidBody) -> None:
-    h = 1e-5
-    for q, _ in states():
-        for joint, unit in enumerate(np.eye(4)):
-            slope = (body.potential_energy(q + h * unit) - body.potential_energy(q - h * unit)) / (2 * h)
-            assert body.bias(q, np.zeros(4))[joint] == pytest.approx(slope, abs=1e-8)
-
-
 def test_energy_is_conserved_over_5_s(body: RigidBody) -> None:
     def motion(_: float, y: Vector) -> Vector:
         q, v = y[:4], y[4:]

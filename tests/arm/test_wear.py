@@ -59,21 +59,6 @@ def test_load_friction_moves_as_an_independent_integration_says(make_arm: Any, s
     assert np.abs(np.array(ours) - np.array(theirs)).max() < 5e-3 * swing
 
 
-def test_load_friction_of_a_rigid_gear_slows_it_by_the_same_torque(make_arm: Any, rigid: Any) -> None:
-    """Driving, the motor loses a share of what it passes on; driven by its link, it is held by that share."""
-    share, load = 0.3, 0.2
-    parameters = roll_arm(make_arm, {"coulomb": 0.0, "breakaway": 0.0, "load": share}, rigid["gear"])
-    actuator, link = parameters.actuator(ROLL), parameters.link[3].inertia.xx
-    for outside in (-load, load):
-        arm = Arm(parameters, longest_step=1e-5)
-        arm.set_load([0.0, 0.0, 0.0, outside])
-        arm.step([0.0, 0.0, 0.0, 2.0], 0.2)
-        felt = 1.0 + share if outside < 0.0 else 1.0 - share
-        torque = actuator.torque_per_volt * 2.0 + felt * outside
-        gone = 1.0 - np.exp(-0.2 * actuator.damping / (actuator.inertia + felt * link))
-        assert arm.velocities[ROLL] == pytest.approx(torque / actuator.damping * gone, rel=1e-3)
-
-
 def test_load_friction_holds_what_would_slide(make_arm: Any, rigid: Any) -> None:
     """The load needs more than the breakaway torque, but friction grows with it; half as much does not hold."""
     for share, holds in ((0.7, True), (0.3, False)):
@@ -160,9 +145,3 @@ def test_lag_delays_a_ramp_by_its_time_constant_and_smooths_a_sine_by_its_gain()
     sine = read(pots(lag=lag), 0.1 * np.sin(rate * time))[400:]
     gain, phase = 1 / np.hypot(1.0, rate * lag), np.arctan(rate * lag)
     np.testing.assert_allclose(sine, 0.1 * gain * np.sin(rate * time[400:] - phase), atol=0.1 * 2e-3)
-
-
-@pytest.mark.parametrize("lag", [1e-6, 1e-5, 1e-4])
-def test_lag_much_shorter_than_a_slice_shows_the_angle(lag: float) -> None:
-    angles = np.random.default_rng(1).uniform(-1.0, 1.0, 200).cumsum() / 100
-    assert np.abs(read(pots(lag=lag), angles) - angles).max() < 0.02 * max(1.0, lag / 1e-5)

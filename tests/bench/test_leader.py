@@ -67,13 +67,6 @@ def test_brings_both_arms_back_after_the_motors_went_off_and_plays_again(
     assert player.plays == 2
 
 
-def test_a_short_break_starts_the_motion_over_from_where_the_hand_is(player: LeaderPlayer, motion: Trajectory) -> None:
-    advance(player, START + 0.5, enabled=True)
-    advance(player, LET_GO_S / 2, enabled=False)
-    advance(player, START, enabled=True)
-    np.testing.assert_allclose(player.angles, motion.angles[0], atol=0.02)
-
-
 @pytest.mark.parametrize("off_s", [LET_GO_S + 0.3 * BRING_BACK_S, LET_GO_S / 2])
 def test_the_leader_never_jumps_when_the_motors_go_on_before_it_is_back(
     player: LeaderPlayer, motion: Trajectory, off_s: float
@@ -96,36 +89,6 @@ def test_a_long_motion_is_read_in_pieces() -> None:
     player = LeaderPlayer(minutes, SLICE, START)
     advance(player, START + 301.0, enabled=True)
     np.testing.assert_allclose(player.angles, 301.0 / 600.0 * 1.2, atol=1e-6)
-
-
-def test_takes_up_another_motion_from_where_the_arms_are_held(player: LeaderPlayer, motion: Trajectory) -> None:
-    other = Trajectory(np.array([0.0, 2.0]), np.array([[-0.4] * 4, [0.6] * 4]))
-    advance(player, START + motion.duration_s + 0.05, enabled=True)
-    advance(player, LET_GO_S + BRING_BACK_S + SLICE, enabled=False)
-    player.take_up(other)
-    advance(player, BRING_BACK_S / 2, enabled=False)
-    half_way = (motion.angles[0] + other.angles[0]) / 2
-    np.testing.assert_allclose(player.angles, half_way)
-    assert player.hold is not None
-    np.testing.assert_allclose(player.hold, half_way)
-    advance(player, BRING_BACK_S / 2 + SLICE, enabled=False)
-    np.testing.assert_array_equal(player.hold, other.angles[0])
-    advance(player, START + 1.0, enabled=True)
-    np.testing.assert_allclose(player.angles, 0.1, atol=1e-9)
-    advance(player, 1.05, enabled=True)
-    assert player.finished
-
-
-def test_another_motion_taken_up_right_after_a_stop_still_shows_the_fall(
-    player: LeaderPlayer, motion: Trajectory
-) -> None:
-    advance(player, START + 0.5, enabled=True)
-    advance(player, LET_GO_S / 2, enabled=False)
-    player.take_up(Trajectory(motion.time_s, motion.angles - 1.0))
-    advance(player, LET_GO_S / 2, enabled=False)
-    assert player.hold is None
-    advance(player, BRING_BACK_S + SLICE, enabled=False)
-    np.testing.assert_array_equal(player.hold, motion.angles[0] - 1.0)
 
 
 def test_brings_one_held_arm_elsewhere_while_the_other_stays(player: LeaderPlayer, motion: Trajectory) -> None:
@@ -155,17 +118,6 @@ def test_brings_an_arm_along_places_and_forgets_those_to_come_when_the_motors_go
     advance(player, START, enabled=True)
     advance(player, LET_GO_S + BRING_BACK_S + 5.0, enabled=False)
     np.testing.assert_array_equal(player.angles, motion.angles[0])
-
-
-def test_after_a_run_both_arms_are_brought_to_the_motion_and_not_where_hands_had_them(
-    player: LeaderPlayer, motion: Trajectory
-) -> None:
-    player.bring(np.ones(4), None, 1.0)
-    advance(player, 1.0 + SLICE, enabled=False)
-    advance(player, START + motion.duration_s + 0.05, enabled=True)
-    advance(player, LET_GO_S + BRING_BACK_S + SLICE, enabled=False)
-    np.testing.assert_array_equal(player.angles, motion.angles[0])
-    np.testing.assert_array_equal(player.hold, motion.angles[0])
 
 
 def test_no_hand_is_on_an_arm_whose_motors_are_on(player: LeaderPlayer) -> None:

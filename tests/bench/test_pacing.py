@@ -52,14 +52,6 @@ def test_slow_motion_takes_as_much_longer(clock: Clock, pacer: Pacer) -> None:
     assert sum(clock.waits) == pytest.approx(0.010 + 0.100 + 0.010)
 
 
-def test_time_spent_fast_is_not_waited_for_afterwards(clock: Clock, pacer: Pacer) -> None:
-    pacer.pace(0.0, real_time=True)
-    pacer.pace(50.0, real_time=False)
-    pacer.pace(50.0, real_time=True)
-    pacer.pace(50.010, real_time=True)
-    assert sum(clock.waits) == pytest.approx(0.010)
-
-
 def test_a_short_lag_is_made_up_for_a_long_one_is_counted(clock: Clock, pacer: Pacer) -> None:
     pacer.pace(0.0, real_time=True)
     clock.now += 0.8 * GIVE_UP_S

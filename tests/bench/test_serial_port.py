@@ -38,14 +38,6 @@ def test_first_open_is_told_once(port: SerialPort) -> None:
     assert not port.connected
 
 
-def test_a_close_and_open_between_two_looks_is_an_open(port: SerialPort) -> None:
-    with serial.Serial(port.path):
-        assert port.poll()
-    with serial.Serial(port.path):
-        assert port.poll()
-        assert port.connected
-
-
 def test_a_killed_host_is_a_closed_port(port: SerialPort) -> None:
     code = f"import serial, sys; s = serial.Serial({port.path!r}); print('open', flush=True); sys.stdin.read()"
     with subprocess.Popen([sys.executable, "-c", code], stdin=subprocess.PIPE, stdout=subprocess.PIPE) as host:
@@ -57,12 +49,6 @@ def test_a_killed_host_is_a_closed_port(port: SerialPort) -> None:
         host.wait()
     port.poll()
     assert not port.connected
-
-
-@pytest.mark.parametrize("baud", [115200, 1_000_000, 57600, 250_000])
-def test_host_speed_is_seen(port: SerialPort, baud: int) -> None:
-    with serial.Serial(port.path, baud):
-        assert port.baud() == baud
 
 
 def test_all_bytes_pass_both_ways_unchanged(port: SerialPort) -> None:

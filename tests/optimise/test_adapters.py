@@ -64,12 +64,6 @@ def threads() -> int:
     return sum(thread.name == "differential evolution" for thread in threading.enumerate())
 
 
-@pytest.mark.parametrize("budget", [100, 107])
-def test_scipys_thread_ends_with_the_budget(budget: int) -> None:
-    minimise(valley, LOWER, UPPER, method="de", budget=budget)
-    assert threads() == 0
-
-
 def test_scipys_thread_ends_when_the_search_is_stopped_or_the_cost_fails() -> None:
     minimise(valley, LOWER, UPPER, method="de", callback=lambda step: True)
     assert threads() == 0

@@ -77,13 +77,6 @@ def test_runs_split_into_parts_are_the_runs_in_their_order() -> None:
     assert len(set(costs)) == 3
 
 
-def test_company_changes_nothing(small: Comparison) -> None:
-    alone = compare(Plan(("ackley",), ("shifted",), ("de",), dimensions=3, budget=60, runs=4, seed=7))
-    assert alone.of("ackley", "shifted", "de").tolist() == small.of("ackley", "shifted", "de").tolist()
-    other = compare(Plan(("ackley",), ("shifted",), ("de",), dimensions=3, budget=60, runs=4, seed=8))
-    assert not set(other.costs.flat) & set(alone.costs.flat)
-
-
 def made_up() -> Comparison:
     """Two functions, three methods, six runs; on plain functions gwo leads, on shifted ones it comes last."""
     plan = Plan(("sphere", "ackley"), ("plain", "shifted"), ("gwo", "de", "pso"), runs=6)
@@ -120,15 +113,6 @@ def test_statement_says_who_falls_and_who_rises() -> None:
     assert "On shifted functions, by mean rank: de (1.25), pso (1.75), gwo (3.00)." in told
     assert "From plain to shifted functions gwo falls from place 1 to 3. What falls was helped by minima" in told
     assert "against de on 2 shifted functions (Mann-Whitney, Holm, 5 %): gwo 0/2/0, pso 0/1/1." in told
-
-
-def test_statement_without_plain_functions_or_without_de(small: Comparison) -> None:
-    only = compare(Plan(("sphere",), ("shifted",), ("gwo", "pso"), dimensions=2, budget=20, runs=2))
-    assert "From plain" not in statement(only)
-    assert "against" not in statement(only)
-    assert as_dict(only)["against_de"] == {}
-    same = Comparison(made_up().plan, made_up().costs[:, [0, 0]])
-    assert "no method changes its place by 2 or more" in statement(same)
 
 
 def test_text_and_dict_hold_the_medians(small: Comparison) -> None:

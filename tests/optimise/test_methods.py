@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
-from multiprocessing import get_context
-from pathlib import Path
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
@@ -102,16 +100,6 @@ def test_same_seed_same_run_and_another_seed_another(method: str) -> None:
 
 
 @EVERY
-def test_a_run_neither_reads_nor_moves_numpys_global_generator(method: str) -> None:
-    np.random.seed(20_221)
-    expected = np.random.random(3)
-    np.random.seed(20_221)
-    first = minimise(bowl, LOWER, UPPER, method=method, budget=100)
-    assert (np.random.random(3) == expected).all()
-    assert minimise(bowl, LOWER, UPPER, method=method, budget=100).cost == first.cost
-
-
-@EVERY
 def test_batch_and_map_and_threads_give_the_same_run(method: str) -> None:
     whole = minimise(bowl, LOWER, UPPER, method=method, budget=155, seed=2)
     with ThreadPoolExecutor(2) as pool:
@@ -119,14 +107,6 @@ def test_batch_and_map_and_threads_give_the_same_run(method: str) -> None:
             one_by_one = minimise(mapped(bowl_of_one, mapping), LOWER, UPPER, method=method, budget=155, seed=2)
             assert one_by_one.history == whole.history
             assert one_by_one.x.tolist() == whole.x.tolist()
-
-
-@pytest.mark.slow
-def test_processes_give_the_same_run() -> None:
-    whole = minimise(bowl, LOWER, UPPER, budget=55, seed=2)
-    with ProcessPoolExecutor(2, mp_context=get_context("spawn")) as pool:
-        spread = minimise(mapped(bowl_of_one, pool.map), LOWER, UPPER, budget=55, seed=2)
-    assert spread.history == whole.history
 
 
 @EVERY
@@ -156,19 +136,6 @@ def test_failed_costs_are_worst_and_stop_nothing(method: str, bad: float) -> Non
     assert found.evaluations == 400
     assert found.x[0] >= 0.0
     assert found.cost < 0.05
-
-
-@EVERY
-def test_nothing_but_failures_costs_infinity(method: str) -> None:
-    found = minimise(lambda points: np.full(len(points), np.nan), LOWER, UPPER, method=method, budget=120)
-    assert found.cost == np.inf
-    assert found.evaluations == 120
-    assert set(found.history.cost) == {np.inf}
-
-
-@EVERY
-def test_flat_costs_do_not_end_a_run_early(method: str) -> None:
-    assert minimise(lambda points: np.zeros(len(points)), LOWER, UPPER, method=method, budget=300).evaluations == 300
 
 
 @EVERY
@@ -209,22 +176,9 @@ def test_spent_budget_gives_no_more_candidates() -> None:
         optimiser.ask()
 
 
-@EVERY
-def test_pack_size_is_as_wished(method: str) -> None:
-    with create(method, LOWER, UPPER, budget=100, pack=14) as optimiser:
-        assert optimiser.ask().shape == (14, 3)
-
-
 @pytest.mark.parametrize("method", [method for method in METHODS if method != "cma-es"])
 def test_one_coordinate_is_enough(method: str) -> None:
     assert minimise(lambda x: (x[:, 0] - 0.3) ** 2, [0], [1], method=method, budget=400).cost < 1e-3
-
-
-@EVERY
-def test_runs_leave_no_file(method: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
-    minimise(bowl, LOWER, UPPER, method=method, budget=200)
-    assert list(tmp_path.iterdir()) == []
 
 
 @pytest.mark.parametrize(
@@ -284,19 +238,6 @@ def test_moved_problem_moved_run(method: str, name: str) -> None:
     shift = np.array([1024.0, -64.0, 7.5, 0.0, -4.0])
     still = run_moved(method, name, np.zeros(5), np.ones(5))
     assert run_moved(method, name, shift, np.ones(5)) == pytest.approx(still, abs=1e-6)
-
-
-@settings(max_examples=25, deadline=None)
-@given(
-    shift=st.lists(st.floats(-1e3, 1e3), min_size=5, max_size=5),
-    scale=st.lists(st.floats(1e-2, 1e3), min_size=5, max_size=5),
-    seed=st.integers(0, 10**6),
-)
-def test_default_cares_neither_where_the_box_is_nor_how_wide(shift: list[float], scale: list[float], seed: int) -> None:
-    still = run_moved("gwo-woa-relative", "sphere", np.zeros(5), np.ones(5), seed)
-    assert run_moved("gwo-woa-relative", "sphere", np.array(shift), np.array(scale), seed) == pytest.approx(
-        still, abs=1e-6
-    )
 
 
 @pytest.mark.parametrize("method", BOUND_TO_THE_ORIGIN)

@@ -46,22 +46,6 @@ def test_a_hang_and_a_crash_are_failures_with_the_output_so_far(compile_avr: Com
     assert "crashed at address 0x" in crashed.stderr
 
 
-LOOPBACK = """
-int main(void) {
-    UBRR0 = 0; UCSR0B = _BV(TXEN0) | _BV(RXEN0);
-    UDR0 = 'o'; __builtin_avr_delay_cycles(1000); uint8_t heard = (UCSR0A & _BV(RXC0)) ? UDR0 : '-';
-    UDR0 = heard == 'o' ? 'k' : '!'; __builtin_avr_delay_cycles(1000);
-    DONE();
-}
-"""
-
-
-def test_loopback_lets_the_program_hear_itself(compile_avr: Compile) -> None:
-    path = str(compile_avr(LOOPBACK, "atmega2560"))
-    assert run_elf(path).stdout == "o!"
-    assert run_elf(path, "--loopback").stdout == "ok"
-
-
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [

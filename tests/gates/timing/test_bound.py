@@ -8,11 +8,9 @@ from pathlib import Path
 import pytest
 
 from tests.gates.timing.programs import Assembled, Compiled
-from tools.gates.timing import facts, loops
 from tools.gates.timing.bound import Timing
 from tools.gates.timing.cycles import MEGA, NANO, Chip
 from tools.gates.timing.facts import Facts
-from tools.gates.timing.graph import Edge, build
 from tools.gates.timing.image import Times
 from tools.gates.timing.listing import ImageError
 
@@ -56,17 +54,8 @@ COUNTED = """
   brne 1b
   ret
 """
-# Entered at its middle when r24 is odd: a loop with two heads.
-TWO_HEADS = """
-  ldi r25, 3
-  sbrc r24, 0
-  rjmp 2f
-1:nop
-  nop
-2:dec r25
-  brne 1b
-  ret
-"""
+
+
 CALLS = """
   rcall helper
   rcall helper
@@ -117,14 +106,6 @@ def test_the_bound_is_what_the_dearest_input_takes(
 
 
 @CHIPS
-def test_a_loop_that_is_entered_in_its_middle_is_bounded_too(tmp_path: Path, chip: Chip) -> None:
-    function = Assembled(tmp_path, TWO_HEADS, chip)
-    (loop,) = loops.find(build(function.program, function.program.entry("work"), chip))
-    assert len(loop.heads) == 2
-    assert function.bound(3) == max(function.measured(argument) for argument in (0, 1))
-
-
-@CHIPS
 def test_a_switch_goes_to_all_its_cases(tmp_path: Path, chip: Chip) -> None:
     function = Compiled(tmp_path, SWITCH, chip)
     assert "__tablejump2__" in function.program.symbols
@@ -144,23 +125,6 @@ def test_no_random_function_is_slower_than_its_bound(tmp_path: Path, chip: Chip)
         bound = function.bound()
         measured = [function.measured(argument) for argument in range(8)]
         assert max(measured) <= bound < 1.5 * max(measured)
-
-
-def test_a_graph_holds_every_way(tmp_path: Path) -> None:
-    program = Assembled(tmp_path, "sbrc r24, 0\n  call helper\n  brcs 1f\n  nop\n1:ret", NANO, also=HELPER).program
-    start = program.entry("work")
-    graph = build(program, start, NANO)
-    call, branch, nop, end = start + 2, start + 6, start + 8, start + 10
-    assert sorted(graph.edges, key=lambda edge: (edge.start, edge.end)) == [
-        Edge(start, call, 1),
-        Edge(start, branch, 3),  # over two words
-        Edge(call, branch, 4),
-        Edge(branch, nop, 1),
-        Edge(branch, end, 2),
-        Edge(nop, end, 1),
-    ]
-    assert graph.calls == {call: program.entry("helper")}
-    assert graph.exits == {end: 4}
 
 
 @pytest.mark.parametrize(
@@ -184,13 +148,6 @@ def test_what_excludes_each_other_is_not_added(tmp_path: Path) -> None:
     program = function.program
     bound = Timing(program, NANO, apart).of(program.entry("work"))
     assert bound == max(function.measured(argument) for argument in (0, 1)) < function.bound()
-
-
-def test_a_fact_needs_its_reason(tmp_path: Path) -> None:
-    path = tmp_path / "facts.toml"
-    path.write_text('[[function]]\nname = "work"\nloop = [{ times = 3 }]\n')
-    with pytest.raises(ImageError, match="no reason"):
-        facts.load(path)
 
 
 KINDS = {"tick's interrupt": 10, "start of the chain": 10, "conversion done": 20, "byte received": 50, "byte sent": 30}
