@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 import signal
 import subprocess
@@ -12,7 +11,6 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pytest
 
 from greywhale.board.device import Device
@@ -165,38 +163,3 @@ def test_threads_can_watch_a_bench_while_it_is_used(start_bench: Start, tmp_path
 
 
 SECONDS = 15
-
-
-def wait_for_rows(log: Path, bench: BenchProcess, host: subprocess.Popen[str]) -> None:
-    """Until the recording has written its first rows."""
-    unfinished = log.with_name(f"{log.stem}.unfinished{log.suffix}")
-    while not unfinished.exists():
-        assert host.poll() is None, host.communicate()
-        bench.command("status")  # takes a moment
-
-
-@pytest.mark.slow
-def test_a_log_goes_on_when_its_port_is_given_back(start_bench: Callable[..., BenchProcess], tmp_path: Path) -> None:
-    """The first bench lives in real time, so that the log is not full before its port goes; the next one hurries."""
-    name, other, out = tmp_path / "board", tmp_path / "other", tmp_path / "log.csv"
-    first = start_bench("--link", str(name), "--speed", "1")
-    start_bench("--link", str(other))
-    options = ("--reconnect", "--seconds", str(SECONDS), "--every", "10", "--json")
-    command = [sys.executable, "-m", "greywhale", "-q", "record", *options]
-    with subprocess.Popen(
-        [*command, "-o", str(out), "--port", str(name)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
-    ) as host:
-        wait_for_rows(out, first, host)
-        other.replace(name)
-        first.close()
-        said, problem = host.communicate()
-    assert (host.returncode, problem) == (0, "")
-    told, log = json.loads(said), read_log(out)
-    ((begin, length),) = told["gaps_s"]
-    assert log.complete
-    assert log.time[-1] == pytest.approx(SECONDS, abs=0.1)
-    assert np.all(np.diff(log.time[log.time > begin + length + 0.1]) < 0.05), "and from then on without a gap"
-    assert set(log.state) == {"disabled"}
-    with Device(str(name), restart=False) as device:
-        status = device.status()
-        assert (status.state, status.stop_reason) == (State.DISABLED, StopReason.RESET), "no motor was ever on"

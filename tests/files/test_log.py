@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import contextlib
-import errno
 import os
 import resource
-import stat
 import tracemalloc
 from collections.abc import Iterator
 from dataclasses import replace
@@ -112,47 +110,12 @@ def test_without_room_for_the_header_nothing_stays(tmp_path: Path) -> None:
     assert os.listdir(tmp_path) == []
 
 
-def test_folders_and_devices_are_refused_before_anything_is_recorded(tmp_path: Path) -> None:
-    os.mkfifo(tmp_path / "device")
-    for name, words in (("device", "not an ordinary file"), (".", "is a directory"), ("none/log", "no such file")):
-        with pytest.raises(UserError, match=f"cannot be written: {words}"):
-            LogWriter(tmp_path / name, ORIGIN).__enter__()
-    assert stat.S_ISFIFO((tmp_path / "device").stat().st_mode)
-    assert os.listdir(tmp_path) == ["device"]
-
-
 def test_an_empty_recording_leaves_the_old_file_and_nothing_else(path: Path, tmp_path: Path) -> None:
     path.write_text("precious")
     with LogWriter(path, ORIGIN):
         pass
     assert path.read_text() == "precious"
     assert os.listdir(tmp_path) == ["log.csv"]
-
-
-def test_a_killed_recording_is_there_to_see_and_to_read(tmp_path: Path) -> None:
-    for name in ("log.unfinished.csv", "log.unfinished-2.csv"):
-        log = LogWriter(tmp_path / "log.csv", ORIGIN).__enter__()
-        for row in range(3):
-            log.append(row * 0.001, *ROW)
-        assert not (tmp_path / name).exists()
-        log.flush()  # the process dies here
-        found = read_log(tmp_path / name)
-        assert (len(found.time), found.complete, found.condition.check) == (3, False, Check.UNCHECKED)
-    write(tmp_path / "log.csv", 5)
-    assert sorted(os.listdir(tmp_path)) == ["log.csv", "log.unfinished-2.csv", "log.unfinished.csv"]
-
-
-def test_what_cannot_be_brought_to_the_disk_stays_unfinished(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    def fail(descriptor: int) -> None:
-        raise OSError(errno.EIO, os.strerror(errno.EIO))
-
-    monkeypatch.setattr(os, "fsync", fail)
-    with pytest.raises(UserError, match="input/output error") as caught:
-        write(tmp_path / "log.csv", 5)
-    kept = tmp_path / "log.unfinished.csv"
-    assert caught.value.__notes__ == [f"What was recorded is in {kept}."]
-    log = read_log(kept)
-    assert (len(log.time), log.complete) == (5, False)
 
 
 @pytest.mark.parametrize(

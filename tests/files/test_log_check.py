@@ -93,42 +93,6 @@ def test_no_damage_to_rows_goes_unsaid(path: Path, short_log: bytes, damage: Cal
         assert any("as they were recorded" in remark for remark in remarks)
 
 
-def frozen(rows: Rows) -> Rows:
-    """The arm stands still for 100 rows that never were; the times go on."""
-    still = [[f"{0.005 * row:.6f}", *rows[99][1:]] for row in range(100, 200)]
-    later = [[f"{float(cells[0]) + 0.5:.6f}", *cells[1:]] for cells in rows[100:]]
-    return [*rows[:100], *still, *later]
-
-
-EDITS: dict[str, tuple[Callable[[Rows], Rows], Check]] = {
-    "first half": (lambda rows: rows[:150], Check.SHORTENED),
-    "second half": (lambda rows: rows[150:], Check.SHORTENED),
-    "cut out of the middle": (lambda rows: rows[:100] + rows[180:], Check.SHORTENED),
-    "voltages x 1.2": (
-        lambda rows: [[*one[:9], *(f"{1.2 * float(volt):.3f}" for volt in one[9:13]), one[13]] for one in rows],
-        Check.CHANGED,
-    ),
-    "leader and follower exchanged": (
-        lambda rows: [[one[0], *one[5:9], *one[1:5], *one[9:]] for one in rows],
-        Check.CHANGED,
-    ),
-    "time reversed": (
-        lambda rows: [[one[0], *other[1:]] for one, other in zip(rows, rows[::-1], strict=True)],
-        Check.CHANGED,
-    ),
-    "follower overwritten by the leader": (
-        lambda rows: [[*one[:5], *one[1:5], *one[9:]] for one in rows],
-        Check.CHANGED,
-    ),
-    "frozen rows put in": (frozen, Check.CHANGED),
-}
-
-
-@pytest.mark.parametrize(("edit", "check"), EDITS.values(), ids=EDITS)
-def test_edits_that_make_a_log_look_better_are_told(tmp_path: Path, edit: Callable[[Rows], Rows], check: Check) -> None:
-    assert edited(tmp_path / "log.csv", edit).condition.check is check
-
-
 @pytest.mark.parametrize(
     "line",
     ["firmware: 9.9.9", "board: nano328", "parameter_crc: 0x1234", "period_ms: 4", "every_ticks: 1",
@@ -259,13 +223,3 @@ def test_a_log_and_a_motion_tell_where_samples_are_missing(tmp_path: Path, count
     assert log.condition.gaps == (Gap(0.199, 0.401, 400),)
     told = (f"{path}: samples are missing for 0.401 s (400 samples) after 0.199 s; nothing is known of the arm there.",)
     assert (log.remarks, load_leader(path).remarks) == (told, told)
-
-
-def test_of_many_gaps_the_first_are_named(tmp_path: Path) -> None:
-    path = tmp_path / "log.csv"
-    with LogWriter(path, Origin()) as writer:
-        for row in range(120):
-            writer.append(row / 1000 + row // 20, [0.1] * 4, [0.1] * 4, [0.0] * 4, "following")
-    (remark,) = read_log(path).remarks
-    assert remark.count("1.001 s (1000 samples) after") == 3
-    assert "after 2.059 s, and 2 gaps more; nothing" in remark

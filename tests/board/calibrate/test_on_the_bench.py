@@ -6,7 +6,6 @@ import json
 import sys
 from collections.abc import Iterator
 from contextlib import ExitStack
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -65,56 +64,6 @@ def test_arms_mounted_anyhow_show_true_angles_after_two_known_poses(benches: Exi
         table = read_parameters(device)
     assert table.each("joint", "motor_sign")[1] == -1
     assert table["joint2.ratio"] == HALF
-
-
-def test_without_a_protractor_the_two_arms_agree(benches: ExitStack, tmp_path: Path) -> None:
-    bench = benches.enter_context(bench_of(mounted_anyhow(3), tmp_path))
-    done = run_calibrate(Hands(bench), tmp_path, "--no-motors", "--joints", "1,3")
-    assert done.code == 0, done.said
-    angles = shown(bench, POSE)
-    assert angles[[5, 7]] == pytest.approx(angles[[1, 3]], abs=0.004)
-    assert np.abs(angles[[1, 3]]).min() > 0.2, "both have moved"
-
-
-@pytest.mark.parametrize(("degrees", "passes"), [(4.0, True), (12.0, False)])
-def test_the_third_pose_shows_how_far_the_arms_are_really_apart(
-    benches: ExitStack, tmp_path: Path, degrees: float, passes: bool
-) -> None:
-    bench = benches.enter_context(bench_of(mounted_anyhow(5), tmp_path))
-    done = run_calibrate(Hands(bench, apart=degrees), tmp_path, *SECOND, "--no-motors", "--joints", "1")
-    assert (done.code == 0) == passes, done.said
-    if passes:
-        apart = json.loads(done.printed)["apart_rad"]
-        assert apart == pytest.approx([0.0, np.radians(degrees), 0.0, 0.0], abs=0.004)
-    else:
-        assert "leader and follower differ by 0.21 rad at joint 1" in done.said
-
-
-def test_an_arm_of_two_joints_is_asked_for_two_joints_and_the_others_are_not_in_use(
-    benches: ExitStack, tmp_path: Path
-) -> None:
-    """Their inputs are open all the time. Undone, the board counts on four joints again."""
-    fixed = [one.model_copy(update={"fixed": joint > 1}) for joint, one in enumerate(default_arm().joint)]
-    arm = mounted_anyhow(6).model_copy(update={"joint": tuple(fixed)})
-    bench = benches.enter_context(bench_of(arm, tmp_path))
-    with Device(bench.port) as device:
-        before = read_parameters(device)
-    done = run_calibrate(Hands(bench), tmp_path, *SECOND, "--joints", "0,1", "--backup", f"{tmp_path}/mine.toml")
-    assert done.code == 0, done.said
-    assert done.said.count("Sweep ") == 4
-    assert "joint 2" not in done.said
-    facts = json.loads(done.printed)
-    assert facts["joints"] == [0, 1]
-    assert [motor["joint"] for motor in facts["motors"]] == [0, 1]
-    assert not any(name.startswith(("joint2", "joint3")) for name in facts["changed"])
-    assert shown(bench, POSE) == pytest.approx(np.tile(np.radians(POSE) * (1, 1, 0, 0), 2), abs=0.004)
-    with Device(bench.port) as device:
-        table = read_parameters(device)
-    assert table.joints_in_use == (0, 1)
-    assert table.each("leader", "scale")[2:] == (0, 0)
-    assert run(["params", "restore", f"{tmp_path}/mine.toml", "--port", bench.port]) == 0
-    with Device(bench.port) as device:
-        assert replace(read_parameters(device), name=before.name) == before
 
 
 def test_an_input_that_ends_changes_nothing(
