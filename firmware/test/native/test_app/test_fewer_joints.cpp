@@ -66,15 +66,6 @@ TEST_CASE("a joint that is not there stays at angle 0 in every sample") {
   }
 }
 
-TEST_CASE("a pot of a joint in use still stops the arm") {
-  Bench arm(two_joints());
-  REQUIRE(arm.enable() == wire::State::soft_start);
-  arm.run(50);
-  arm.set_count(5, 0);
-  arm.run(5);
-  CHECK(arm.stopped_by(wire::Fault::pot_low, 5));
-}
-
 TEST_CASE("a joint whose follower alone has no pot is not in use, whatever its leader and its limits are") {
   params::Table table = two_joints();
   table.leader[2].scale = 10734;

@@ -163,19 +163,6 @@ TEST_CASE("while the host leads its lease cannot be taken away, and the leader a
   CHECK(!board.drivers);  // none of it renewed the lease
 }
 
-TEST_CASE("a host that sends nothing more brings the reference to rest within two pieces, where its last point is") {
-  Led arm;
-  arm.boot();
-  arm.sampling();
-  const wire::LeadReply begun = arm.lead();
-  for (int i = 0; i < 5; ++i) arm.send(static_cast<std::uint8_t>(begun.next + i), 100);
-  arm.run(7 * piece);
-  CHECK(arm.reference() == begun.reference[0] + 5 * 400);
-  arm.run(50);
-  CHECK(arm.reference() == begun.reference[0] + 5 * 400);
-  CHECK(arm.state() == wire::State::soft_start);
-}
-
 TEST_CASE("a point is taken once, in its turn, and while there is room") {
   Led arm;
   arm.boot();
@@ -277,17 +264,6 @@ TEST_CASE("whatever turns the motors off, the leader arm leads again before any 
   led();
 }
 
-TEST_CASE("a refused lead leaves the leader arm leading") {
-  Led arm;
-  arm.set_leader(0, 1.5);
-  arm.set_count(6, 2);
-  arm.boot();
-  arm.sampling();
-  CHECK(arm.refused(wire::LeadRequest{500}).code == wire::NackCode::pot_bad);
-  CHECK(arm.reference() == doctest::Approx(1.5 * 4096).epsilon(0.01));
-  CHECK_FALSE(board.drivers);
-}
-
 TEST_CASE("a follower beyond its limits is led back to the limit, or not at all from too far") {
   params::Table table = bench::defaults();
   table.joint[0].limit_max = 1024;
@@ -300,22 +276,4 @@ TEST_CASE("a follower beyond its limits is led back to the limit, or not at all 
   arm.run(30);
   CHECK(arm.refused(wire::LeadRequest{500}).code == wire::NackCode::error_too_large);
   CHECK_FALSE(board.drivers);
-}
-
-TEST_CASE(
-    "a follower that does not follow the host is the same fault as with the leader arm, and the lease keeps it "
-    "running") {
-  Led arm;  // its speed is 0: it stays where it is
-  arm.boot_with(bench::unwatched());
-  arm.run(1);
-  std::uint8_t next = arm.lead(200).next;
-  for (int i = 1; i <= 40; ++i) {
-    const auto state = arm.status().state;
-    if (state == wire::State::fault) break;
-    next = arm.send(next, 50).next;
-    arm.run(piece);
-    arm.get<wire::RenewReply>(wire::RenewRequest{200});
-    if (i * 200 < 3686) REQUIRE(board.drivers);
-  }
-  CHECK(arm.stopped_by(wire::Fault::tracking, 0));
 }

@@ -132,17 +132,6 @@ TEST_CASE("a refused set leaves the controllers of the joints before it as they 
   CHECK(duties(true) == duties(false));
 }
 
-TEST_CASE("values out of range and indices that do not exist are refused and named") {
-  Booted arm;
-  wire::Nack nack = arm.refused(wire::ParamSetRequest{1, 2999});
-  CHECK(nack.code == wire::NackCode::out_of_range);
-  CHECK(nack.detail == 1);
-  nack = arm.refused(wire::ParamSetRequest{params::count, 0});
-  CHECK(nack.code == wire::NackCode::bad_index);
-  CHECK(nack.detail == unsigned(params::count));
-  CHECK(arm.refused(wire::ParamGetRequest{65535}).code == wire::NackCode::bad_index);
-}
-
 TEST_CASE("an enable on the heels of an apply is judged by the new calibration") {
   Booted arm;
   params::Table table = bench::defaults();
@@ -183,16 +172,6 @@ TEST_CASE("after an apply no enable works before potentiometers were read") {
   board.samples_ready = true;
   arm.tick();
   CHECK(arm.enable() == wire::State::soft_start);
-}
-
-TEST_CASE("defaults are staged, not run") {
-  Booted arm;
-  arm.apply(changed());
-  arm.get<wire::ParamDefaultsReply>(wire::ParamDefaultsRequest{});
-  CHECK(value_of(arm, 1) == 12000);
-  params::Table table = bench::defaults();
-  REQUIRE(arm.ask(wire::ParamApplyRequest{params::crc(table)}).type == 0x85);
-  CHECK(value_of(arm, 1) == 15000);
 }
 
 TEST_CASE("a saved set survives a power cycle; ticks go on and motors may run meanwhile") {

@@ -143,16 +143,6 @@ TEST_CASE("a reset gives the leader's own angle back, only while the motors are 
   CHECK(arm.refused(wire::EnableRequest{0}).code == wire::NackCode::error_too_large);
 }
 
-TEST_CASE("with the motors off a sample holds the leader's own angle, whatever the ratio and the clutch") {
-  Scaled arm(scaled(0.5));
-  arm.disengage();
-  arm.set_leader(0, 2.0);
-  CHECK(std::abs(arm.reference() - 2.0) < count);
-  arm.engage();
-  arm.set_leader(0, -1.0);
-  CHECK(std::abs(arm.reference() + 1.0) < count);
-}
-
 TEST_CASE("the pedal disengages while it is pressed: one that closes, one that opens, or none") {
   for (std::uint8_t input = 0; input <= 2; ++input) {
     params::Table table = still();
@@ -210,13 +200,4 @@ TEST_CASE("the tremor filter is a low-pass of 2^tremor_shift ticks, while the mo
     left *= 31 / 32.0;
     REQUIRE(std::abs(arm.reference(0, 1) - to - left) < 2 / 4096.0);
   }
-}
-
-TEST_CASE("a scaled leader is no fault of the memory check") {
-  Scaled arm(scaled(2));
-  arm.disengage();
-  arm.run(300);
-  arm.engage();
-  arm.run(300);
-  CHECK(arm.status().state == wire::State::disabled);
 }

@@ -48,22 +48,6 @@ TEST_CASE("the filter reaches a step from both sides, never overshoots, and its 
   }
 }
 
-TEST_CASE("filter_shift is the share of a step taken each tick") {
-  params::Table table = bench::defaults();
-  table.filter_shift = 2;
-  table.leader[0] = {0, 8192};  // the angle is count14
-  app::Sampling sampling;
-  supervisor::Observation seen = {};
-  sampling.configure(table);
-  std::uint16_t sums[8] = {};
-  tick(sampling, sums, seen);
-  sums[0] = 4000;
-  tick(sampling, sums, seen);
-  CHECK(sampling.leader(0) == 4000);  // 16000 / 4
-  tick(sampling, sums, seen);
-  CHECK(sampling.leader(0) == 7000);
-}
-
 TEST_CASE("an error is that from the follower to the leader within its joint's limits, and a distance is its size") {
   params::Table table = bench::defaults();
   table.filter_shift = 0;
