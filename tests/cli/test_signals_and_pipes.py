@@ -12,7 +12,6 @@ from pathlib import Path
 
 import pytest
 
-from greywhale.cli import entry
 from greywhale.files.log import read_log
 from greywhale.protocol import schema
 from greywhale.protocol.schema import State
@@ -87,66 +86,3 @@ def test_closed_streams_are_nobodys(numbers: tuple[int, ...]) -> None:
         assert {kind for kind, _ in board.requests} <= {request.TYPE for request in asks}
     assert (done.returncode, done.stderr) == (0, "")
     assert bool(done.stdout) == (1 not in numbers)
-
-
-# Runs the installed command. From its first statement on, at each import, and wherever the module that begins and ends
-# a verb calls or returns, a copy of the process gets Ctrl-C; the process itself goes on.
-PRESSED_EVERYWHERE = """
-import atexit, json, os, runpy, signal, sys
-
-begun = False
-pressed = False
-ends = []
-
-def press():
-    global begun, pressed
-    begun = begun or signal.getsignal(signal.SIGINT) is signal.SIG_DFL
-    if pressed or not begun:
-        return
-    read, write = os.pipe()
-    child = os.fork()
-    if child == 0:
-        pressed = True
-        os.dup2(write, 1)
-        os.dup2(write, 2)
-        os.kill(os.getpid(), signal.SIGINT)
-        return
-    os.close(write)
-    with open(read) as said:
-        ends.append((said.read(), os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])))
-
-def at_import(event, arguments):
-    if event == "import":
-        press()
-
-def at_call(frame, event, argument):
-    if event in ("call", "return") and frame.f_code.co_filename.endswith("greywhale/cli/entry.py"):
-        press()
-
-def tell():
-    press()
-    if not pressed:
-        print(json.dumps(ends), file=sys.stderr)
-
-atexit.register(tell)
-signal.signal(signal.SIGINT, signal.default_int_handler)
-sys.addaudithook(at_import)
-sys.setprofile(at_call)
-sys.argv = sys.argv[1:]
-runpy.run_path(sys.argv[0], run_name="__main__")
-"""
-
-
-def test_ctrl_c_at_any_moment_of_the_start_and_of_the_end_is_no_traceback() -> None:
-    """Before the first statement of ours Python itself starts, and knows no better."""
-    command = [sys.executable, "-c", PRESSED_EVERYWHERE, str(Path(sys.executable).with_name("greywhale"))]
-    done = subprocess.run([*command, "ports", "--json"], capture_output=True, text=True, check=True)
-    ends = json.loads(done.stderr)
-    assert len(ends) > 100
-    answer = json.dumps({"error": "interrupted.", "exit_code": entry.INTERRUPTED})
-    told = f"{answer}\ngreywhale: interrupted.\n"
-    assert {(said.lstrip(), code) for said, code in ends} == {
-        ("", -signal.SIGINT),  # which a shell calls 130
-        ("", entry.INTERRUPTED),
-        (told, entry.INTERRUPTED),
-    }

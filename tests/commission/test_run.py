@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -142,16 +142,6 @@ def test_joints_that_follow_well_or_gain_no_more_get_no_more_trials(hoped: list[
     assert run.is_enough(hoped) == enough
 
 
-def test_the_errors_of_a_trial_stand_beside_what_the_model_said(whole: Whole) -> None:
-    before = whole.outcome.trials.before
-    joints = list(before.table.joints_in_use)
-    sizes = [1e3 * np.sqrt(scale * before.measured.error[:, joints].mean()) for scale in (4, 1)]
-    twice = replace(before.measured, error=4 * before.measured.error)
-    assert errors_beside(twice, before) == f"before: error {sizes[0]:.1f} mrad rms predicted, {sizes[1]:.1f} measured"
-    nothing = replace(before.measured, error=np.full_like(before.measured.error, np.nan))
-    assert errors_beside(twice, replace(before, measured=nothing, stopped="it hunted")) == "before: it hunted"
-
-
 def test_an_interrupted_tuning_goes_on(rig: SimulatedRig, options: Make, monkeypatch: pytest.MonkeyPatch) -> None:
     """With the real search, over the model's own plant alone."""
     shorten(monkeypatch)
@@ -194,25 +184,6 @@ def test_a_model_of_another_arm_is_refused_before_it_moves_the_board(rig: Simula
 def test_a_finished_commissioning_needs_no_arm_to_tell_its_story_again(rig: SimulatedRig, whole: Whole) -> None:
     assert commission(whole.options(resume=True)).as_dict() == whole.outcome.as_dict()
     assert rig.played == []
-
-
-def test_a_model_of_another_arm_file_is_refused_before_anything_moves(rig: SimulatedRig, options: Make) -> None:
-    with pytest.raises(UserError, match="model.toml: .* white_box"):
-        commission(options(arm_file="white_box"))
-    assert rig.played == []
-
-
-def test_another_board_is_refused_on_resuming(rig: SimulatedRig, options: Make) -> None:
-    def interrupt(number: int) -> None:
-        if number == 4:
-            raise KeyboardInterrupt
-
-    rig.at_play = interrupt
-    with pytest.raises(KeyboardInterrupt):
-        commission(options())
-    rig.stored = rig.stored.with_raw({"joint0.kp": 12345})
-    with pytest.raises(UserError, match="another set"):
-        commission(options(resume=True))
 
 
 def test_without_a_model_the_arm_is_excited_and_identified(

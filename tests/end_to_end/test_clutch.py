@@ -1,4 +1,4 @@
-"""Motion scaling, clutch and tremor filter on both boards: the arm goes where they say, and nothing jumps."""
+"""Motion scaling and clutch on both boards: the arm goes where they say, and nothing jumps."""
 
 from __future__ import annotations
 
@@ -7,15 +7,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from greywhale.files.trajectory import Trajectory
 from greywhale.protocol import schema
-from greywhale.protocol.schema import Clutch, ClutchAction, Fault, State
+from greywhale.protocol.schema import Clutch, Fault, State
 from tests.end_to_end.test_lock_step import RAD, set_parameters
 
 pytestmark = pytest.mark.slow
 RATIO_ONE, THIRD, DOUBLE = 64, 21, 128  # raw
 NEAR_RAD = 0.08  # the default controllers' error at rest
-TREMOR_HZ, TREMOR_RAD = 10.0, 0.05
 
 
 def scaled(host: Any, raw: int, **others: int) -> None:
@@ -69,35 +67,3 @@ def test_the_pedal_moves_the_leader_alone_and_nothing_jumps(lock_step: Any, boar
     lead(host, [0.0, 0.0, 0.0, 0.0])
     assert host.bench.angles == pytest.approx(held + 2 * np.array([0.3, -0.3, 0.3, -0.2]), abs=NEAR_RAD)
     assert well(host)
-
-
-def test_disengaged_the_arm_is_enabled_far_from_its_leader(lock_step: Any, board_name: str) -> None:
-    host = lock_step(board_name)
-    host.bench.leader.bring(np.full(4, 1.2), np.zeros(4), 0.5)
-    host.run(1.0)
-    assert host.ask(schema.ClutchRequest(ClutchAction.DISENGAGE)).clutch is Clutch.DISENGAGED
-    host.follow()
-    assert host.bench.angles == pytest.approx(np.zeros(4), abs=NEAR_RAD)
-    taken_up = host.bench.leader.angles.copy()
-    assert host.ask(schema.ClutchRequest(ClutchAction.ENGAGE)).clutch is Clutch.SHIFTED
-    lead(host, [0.5, 0.3, -0.3, 0.0])
-    assert host.bench.angles == pytest.approx(np.array([0.5, 0.3, -0.3, 0.0]) - taken_up, abs=NEAR_RAD)
-    assert well(host)
-
-
-@pytest.mark.parametrize(("shift", "left"), [(0, 1.0), (4, 0.71), (6, 0.24)])
-def test_the_tremor_filter_takes_away_what_its_delay_costs(lock_step: Any, shift: int, left: float) -> None:
-    """A first-order low-pass of 2^shift ms, and a tick: 1 / sqrt(1 + (2 pi f T)^2) of a tremor is left."""
-    host = lock_step()
-    time_s = np.arange(801) / 200
-    tremor = 0.3 + TREMOR_RAD * np.sin(2 * np.pi * TREMOR_HZ * time_s) * np.minimum(1.0, time_s)
-    host.bench.leader.take_up(Trajectory(time_s, tremor[:, None] * np.array([1.0, 0.0, 0.0, 0.0])))
-    set_parameters(host, {"tremor_shift": shift, "unrest_amplitude": 0})
-    host.follow()
-    host.ask(schema.TelemetryRequest(1))
-    host.run(1.5)
-    host.samples.clear()
-    host.run(1.0)
-    swing = references(host)[:, 0]
-    parts = np.exp(-2j * np.pi * TREMOR_HZ * np.arange(len(swing)) / 1000)
-    assert 2 * abs(np.mean((swing - swing.mean()) * parts)) / TREMOR_RAD == pytest.approx(left, abs=0.05)

@@ -43,24 +43,6 @@ def test_uploaded_controllers_survive_a_restart(start: Start, tmp_path: Path) ->
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("writes", [1, 60, 150])
-def test_a_power_cut_during_a_save_keeps_the_old_set(start: Start, tmp_path: Path, writes: int) -> None:
-    bench = start("--eeprom", str(tmp_path / "eeprom.bin"))
-    with Device(bench.port) as device:
-        old = upload_controller(device, TABLES / "before_tuning.toml").param_crc
-        bench.command(f"power off {writes}")
-        with pytest.raises(UserError):
-            upload_controller(device, TABLES / "table_10.toml")
-    assert bench.command("status")["powered"] is False
-    bench.command("power on")
-    with Device(bench.port) as device:
-        assert device.hello.param_crc == old
-        new = upload_controller(device, TABLES / "table_10.toml").param_crc
-    with Device(bench.port) as device:
-        assert device.hello.param_crc == new != old
-
-
-@pytest.mark.slow
 def test_noise_on_the_line_delays_but_corrupts_nothing(start: Start) -> None:
     bench = start()
     with Device(bench.port) as device:

@@ -127,9 +127,8 @@ def test_a_hand_may_lean_on_the_follower_for_ten_seconds(lock_step: Any) -> None
     assert abs(float(host.bench.angles[0])) < 0.1
 
 
-@pytest.mark.parametrize("joint", [1, 2])
-def test_a_joint_that_stays_blocked_is_stalled_after_its_time(lock_step: Any, joint: int) -> None:
-    host = lock_step()
+def test_a_joint_that_stays_blocked_is_stalled_after_its_time(lock_step: Any) -> None:
+    joint, host = 1, lock_step()
     set_parameters(host, travel(load_arm("default")) | {"stall_time": 4 * STALLED_S})
     host.follow()
     lead(host, joint, 0.0, 2.0)
@@ -141,7 +140,7 @@ def test_a_joint_that_stays_blocked_is_stalled_after_its_time(lock_step: Any, jo
     assert not host.bench.motors_enabled
 
 
-@pytest.mark.parametrize("joint", range(4))
+@pytest.mark.parametrize("joint", [1, 2])
 def test_a_frozen_potentiometer_cannot_let_a_known_arm_run_away(lock_step: Any, joint: int) -> None:
     host = lock_step()
     set_parameters(host, tuned() | travel(load_arm("default")))

@@ -11,7 +11,6 @@ import pytest
 
 from greywhale.arm import ArmParameters
 from greywhale.arm.plants import column
-from greywhale.base.errors import UserError
 from greywhale.files.arm import load_arm
 from greywhale.files.log.condition import Condition
 from greywhale.identify import IdentificationResult, identify
@@ -152,22 +151,6 @@ def test_interrupt_before_any_model_is_an_interrupt(recorded: Recorded, white_bo
         identify([recorded.fit], white_box, report=interrupt_at("fitting the motors"))
 
 
-def test_the_share_moves_on_with_every_step_of_a_fit(shoulder: Recorded, white_box: ArmParameters) -> None:
-    """The last and longest fit of a stage as well, which sees all windows."""
-    shares: dict[str, list[float]] = {}
-
-    def report(what: str, fraction: float) -> None:
-        shares.setdefault(what, []).append(fraction)
-        interrupt_at("choosing the model's order")(what, fraction)
-
-    identify([first(shoulder.fit, 5.0)], white_box, report=report)
-    told = shares["least squares from several starts"]
-    assert told == sorted(told)
-    starts = 2
-    assert len(set(told)) > 2 * starts
-    assert starts / (starts + 1) < told[-1] <= 1.0
-
-
 def test_model_that_learnt_its_controller_is_warned_about() -> None:
     def verdict(name: str, role: str, model: float) -> LogVerdict:
         return LogVerdict(name, role, "closed loop", (1.0, 0.0, 0.0, 0.0), (model, 0.0, 0.0, 0.0))
@@ -250,11 +233,3 @@ def test_model_that_is_really_worse_is_told(outcome: IdentificationResult) -> No
     verdict = judge(outcome.subjects[1], outcome.arm, worse[0], found.zero, found.joints, worse[1:])
     assert verdict.is_worse
     assert warnings_of([verdict])
-
-
-def test_unknown_method_and_no_logs_are_bad_usage(recorded: Recorded, white_box: ArmParameters) -> None:
-    with pytest.raises(UserError, match="paper-printed") as refused:
-        identify([recorded.fit], white_box, method="magic")
-    assert refused.value.exit_code == 2
-    with pytest.raises(UserError, match="at least one log"):
-        identify([], white_box)

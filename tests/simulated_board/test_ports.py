@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import pytest
 
-from greywhale_sim._board import Board, BoardError
 from tests.simulated_board.avr import MakeProgram, Program
 
 READ = """
@@ -47,17 +46,3 @@ def test_a_pin_is_held_through_a_reset_until_it_is_let_go(program: MakeProgram) 
     started.board.reset()
     started.run(2000)
     assert started.u8("seen")[0] >> 4 & 1 == 1
-
-
-def test_holding_one_pin_leaves_its_neighbours_alone(program: MakeProgram) -> None:
-    started = program(READ).start()
-    started.board.hold_pin("B", 3, True)
-    started.board.hold_pin("A", 4, False)
-    started.board.hold_pin("C", 4, False)
-    started.run(2000)
-    assert started.u8("seen")[0] == 1 << 4 | 1 << 3
-
-
-def test_a_pin_that_does_not_exist_is_named() -> None:
-    with pytest.raises(BoardError, match="no pin PA4"):
-        Board("atmega328p").hold_pin("A", 4, False)

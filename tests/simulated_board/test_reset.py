@@ -30,17 +30,6 @@ def test_power_on_and_reset_pin_report_their_cause_and_reset_keeps_ram(program: 
     assert run.u8("kept") == [0xA7]
 
 
-def test_causes_collect_until_they_are_cleared(program: MakeProgram) -> None:
-    run = program(CAUSE.replace("CLEAR", "0")).start()
-    run.run(1000)
-    run.board.reset()
-    run.run(1000)
-    assert run.u8("cause") == [PORF | EXTRF]
-    run.start()
-    run.run(1000)
-    assert run.u8("cause") == [PORF]
-
-
 def test_ram_after_power_on_is_garbage_made_from_the_seed(program: MakeProgram) -> None:
     run = program(CAUSE.replace("CLEAR", "1"))
     memories = []
@@ -50,19 +39,6 @@ def test_ram_after_power_on_is_garbage_made_from_the_seed(program: MakeProgram) 
     assert memories[0] != memories[1]
     assert memories[0] == memories[2]
     assert len(set(memories[0])) == 256
-
-
-def test_without_power_only_time_passes(program: MakeProgram) -> None:
-    run = program(CAUSE.replace("CLEAR", "1")).start()
-    run.run(1000)
-    run.board.power_off()
-    at = run.board.cycle
-    assert run.run(5000) == 0
-    assert run.board.cycle == at + 5000
-    assert not run.board.pin("B", 0)
-    assert not run.board.powered
-    run.board.reset()
-    assert not run.board.powered
 
 
 BORF = 4
@@ -170,16 +146,6 @@ def test_the_reset_pin_does_not_end_the_watchdogs_resets_but_a_power_cut_does(pr
     run.start()
     run.run(200_000)
     assert run.board.stats().watchdog_resets == before
-
-
-def test_a_watchdog_reset_comes_at_the_same_cycle_however_the_run_is_cut(program: MakeProgram) -> None:
-    hashes = set()
-    for chunk in (977, 50_000, 6_000_000):
-        run = program(WATCHDOG).start()
-        while run.run(chunk) == 0:
-            pass
-        hashes.add((run.board.trace_hash, run.board.cycle))
-    assert len(hashes) == 1
 
 
 @pytest.mark.parametrize(

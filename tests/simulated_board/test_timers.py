@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from itertools import pairwise
 
 import pytest
 
-from greywhale_sim._board import Board
 from tests.simulated_board.avr import MakeProgram
 
 PERIOD = """
@@ -146,22 +144,6 @@ def test_duty_is_what_the_registers_command(
     assert run.board.outputs()[index] == pytest.approx(duty)
 
 
-def test_running_pwm_costs_no_events(program: MakeProgram) -> None:
-    """Six 20 kHz timers and a sleeping CPU: the CPU never wakes."""
-    source = """
-    int main(void) {
-        ICR1 = ICR3 = ICR4 = ICR5 = 400; TCCR1A = TCCR3A = TCCR4A = TCCR5A = 0x80;
-        TCCR1B = TCCR3B = TCCR4B = TCCR5B = 0x11; TCCR0A = TCCR2A = 0x83; TCCR0B = TCCR2B = 1;
-        sleep_enable(); sei(); for (;;) sleep_cpu();
-    }
-    """
-    run = program(source).start()
-    run.run(16_000_000)
-    stats = run.board.stats()
-    assert stats.interrupts == 0
-    assert stats.sleep_cycles > 15_999_000
-
-
 PINS = "int main(void) { DDRA = 0x0F; PORTA = 0x3C; DDRH = 0x40; PORTH = 0x40; for (;;); }"
 
 
@@ -177,22 +159,3 @@ def test_a_pin_is_high_when_it_is_an_output_and_driven_high(program: MakeProgram
     assert board.outputs() is values
     assert board.pin("A", 2)
     assert not board.pin("A", 4)
-
-
-@pytest.mark.parametrize(
-    ("chip", "call", "words"),
-    [
-        (NANO, lambda b: b.duty(3, "A"), "no output OC3A"),
-        (NANO, lambda b: b.add_duty_output(1, "C"), "no output OC1C"),
-        (NANO, lambda b: b.pin("A", 0), "no pin PA0"),
-        (MEGA, lambda b: b.pin("I", 0), "no pin PI0"),
-        (MEGA, lambda b: b.add_pin_output("A", 8), "no pin PA8"),
-    ],
-)
-def test_an_output_the_chip_does_not_have_is_an_error(
-    program: MakeProgram, chip: str, call: Callable[[Board], object], words: str
-) -> None:
-    with pytest.raises(ValueError, match=words):
-        call(
-            program(PINS.replace("DDRA", "DDRB").replace("PORTA", "PORTB").split("DDRH")[0] + "for (;;); }", chip).board
-        )
