@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import multiprocessing
 import os
-import subprocess
 import sys
 from pathlib import Path
 
@@ -23,12 +22,6 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.chdir(tmp_path)
     monkeypatch.delenv("PYTHONSAFEPATH", raising=False)
     return tmp_path
-
-
-def test_what_is_started_plainly_would_run_a_strangers_file(folder: Path) -> None:
-    """What the other tests would find."""
-    subprocess.run([sys.executable, "-c", "import csv"], check=True)
-    assert ran(folder) == {"csv"}
 
 
 @pytest.mark.parametrize("environment", [None, dict(os.environ)])

@@ -10,11 +10,11 @@ from pathlib import Path
 import matplotlib.image
 import pytest
 
-from tests.cli.example_log import write_log
 from tests.support.strangers import plant, ran
 
 INSTALLED = [str(Path(sys.executable).with_name("greywhale"))]
-AS_MODULE = [sys.executable, "-m", "greywhale"]
+
+
 COMPARE = "compare --functions sphere --methods cma-es --budget 20 --seeds 2 --workers 2 --out picture.png"
 
 
@@ -36,16 +36,3 @@ def test_a_verb_that_draws_and_starts_processes_runs_nothing_of_the_current_fold
     assert ran(tmp_path) == set()
     corner = matplotlib.image.imread(tmp_path / "picture.png")[0, 0]
     assert corner.tolist() == [1.0, 1.0, 1.0, 1.0], "the paper is white"
-
-
-def test_as_a_module_it_imports_nothing_of_the_current_folder_once_it_is_found(tmp_path: Path) -> None:
-    """What Python itself imports until it has found a module of `-m` is spared."""
-    empty = tmp_path / "elsewhere" / "empty.py"
-    empty.parent.mkdir()
-    empty.write_text("import sys\nprint(*sys.modules)\n")
-    command = [sys.executable, "-m", "empty"]
-    own = subprocess.run(command, cwd=empty.parent, capture_output=True, text=True, check=True).stdout.split()
-    write_log(tmp_path / "log.csv")
-    plant(tmp_path, spare=own)
-    run(tmp_path, AS_MODULE, "evaluate log.csv")
-    assert ran(tmp_path) == set()

@@ -12,7 +12,6 @@ from greywhale.arm.plants import column, plant_row
 from greywhale.commission.evidence import failing_plants, gather
 from greywhale.commission.journal import CommissioningJournal
 from greywhale.commission.motions import check_motion
-from greywhale.commission.predict import predict
 from greywhale.commission.trials import Trials
 from greywhale.files.arm import default_arm
 from greywhale.files.log import read_log
@@ -30,16 +29,6 @@ def loose_arm() -> ArmParameters:
     data = default_arm().model_dump()
     data["joint"][JOINT]["gear"]["half_gap"] = GAP
     return ArmParameters.model_validate(data, strict=False)
-
-
-def test_a_model_predicts_what_its_own_arm_does(trials: Trials, rig: SimulatedRig) -> None:
-    before = play_before(trials, rig)
-    shown = predict(rig.arm, trials.table, before.traces)[0]
-    apart = np.mean((shown.follower - before.traces.follower) ** 2, axis=0)
-    assert (apart < 0.1 * before.measured.error.mean(axis=0)).all()
-    rows = trials.check.parts["moves"]
-    measured, predicted = (np.abs(one.voltage[one.rows(rows)]).mean(axis=0) for one in (before.traces, shown))
-    assert predicted == pytest.approx(measured, rel=0.1)
 
 
 def test_the_plant_that_shows_the_hunting_is_the_model_with_one_change(tmp_path: Path) -> None:

@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 from greywhale.base.errors import UserError
-from greywhale.commission.arm_on_port import ArmOnPort
 from greywhale.commission.choose import confirm
 from greywhale.commission.judge import BEARABLE
 from greywhale.commission.result import CommissioningResult
@@ -190,8 +189,3 @@ def test_controllers_from_before_that_the_board_stops_are_refused(trials: Trials
 
     with pytest.raises(UserError, match="ended early: the board stopped"):
         wild.play_before(Stopping(rig.arm))  # type: ignore[arg-type]
-
-
-def test_a_simulated_rig_offers_what_a_rig_offers() -> None:
-    offered = {name for name in vars(SimulatedRig) if not name.startswith("_")}
-    assert {name for name in vars(ArmOnPort) if not name.startswith("_")} <= offered

@@ -49,14 +49,6 @@ def test_the_native_filter_is_scipys(kind: type) -> None:
     np.testing.assert_allclose(band_power(angles, 2, BLOCK, SECTIONS), wanted, rtol=1e-9)
 
 
-def test_swinging_in_the_band_is_rattling_and_elsewhere_is_not() -> None:
-    slow = wave(0.4, 0.3)
-    for hz, size, low, high in ((10.0, 0.004, 0.85, 1.1), (20.0, 0.004, 0.85, 1.1), (2.0, 0.004, 0.0, 0.15)):
-        found = rattle(follower(slow, wave(hz, size)), slow, 1, 0.2)
-        assert (found >= low * size / np.sqrt(2.0)).all(), hz
-        assert (found <= high * size / np.sqrt(2.0)).all(), hz
-
-
 def test_a_follower_that_does_as_its_leader_does_not_rattle() -> None:
     trembling = wave(0.4, 0.3) + wave(10.0, 0.002)
     late = np.concatenate([trembling[:1].repeat(20, axis=0), trembling[:-20]])
@@ -157,8 +149,3 @@ def test_ripple_is_what_the_voltage_does_beyond_its_mean_over_25_ms(hz: float, s
     for board in (Board.MEGA2560, Board.NANO328):
         duties = np.round(voltage / 15.0 * np.array(pwm_steps(board))).astype(np.int16)[None]
         np.testing.assert_allclose(15.0 * ripple(duties, (0, 6000), board)[0], ripple_of_record(voltage), atol=0.03)
-
-
-def test_ripple_of_noise_is_its_deviation_but_for_what_the_mean_takes() -> None:
-    noise = np.random.default_rng(0).normal(0.0, 1.0, (20_000, 4))
-    np.testing.assert_allclose(ripple_of_record(noise), np.sqrt(1.0 - 1.0 / 25.0), rtol=0.02)

@@ -7,7 +7,6 @@ import os
 import select
 import subprocess
 import sys
-from dataclasses import replace
 from pathlib import Path
 
 import matplotlib.pyplot as plt
@@ -15,7 +14,6 @@ import numpy as np
 import pytest
 
 from greywhale.base.errors import UserError
-from greywhale.base.study import LocalWorkers
 from greywhale.optimise.comparison import Comparison, Duel, Plan, compare, run_once
 from greywhale.optimise.comparison_report import as_dict, statement, text, write_report
 from greywhale.optimise.functions import SETTINGS
@@ -30,17 +28,6 @@ SMALL = Plan(("sphere", "ackley"), SETTINGS, ("gwo-woa", "de", "cma-es"), dimens
 @pytest.fixture(scope="module")
 def small() -> Comparison:
     return compare(SMALL)
-
-
-@pytest.mark.slow
-def test_processes_change_nothing_and_progress_ends_at_one(small: Comparison) -> None:
-    """Of the methods that a process imports quickly."""
-    seen: list[float] = []
-    plan = replace(SMALL, methods=("gwo-woa", "de"))
-    parallel = compare(plan, LocalWorkers(2), lambda what, fraction: seen.append(fraction))
-    assert (parallel.costs == small.costs[:, :, :2]).all()
-    assert seen == sorted(seen)
-    assert seen[-1] == 1.0
 
 
 ENDLESS = """

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import re
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
@@ -51,24 +49,6 @@ def test_a_package_is_left_out_with_its_digests() -> None:
     assert lock.without(lines, {"b-c"}) == ["a==1 \\", "    --hash=sha256:1", "d==4"]
 
 
-def test_versions_alone_can_be_had_too() -> None:
-    """For a constraint: with digests, pip takes nothing else that is not pinned on the command line."""
-    versions = lock.versions()
-    assert {lock.name_of(line) for line in versions} == set(pinned())
-    assert all(re.fullmatch(r"[\w.-]+==[\w.!+-]+", line) for line in versions)
-
-
 def test_all_that_is_asked_for_is_pinned() -> None:
     for asked, files in ((lock.build(), [lock.RUN]), (lock.page(), [lock.PAGE]), (lock.wanted(), [])):
         assert {lock.name_of(name) for name in asked} - set(pinned(*files)) == set()
-
-
-def test_another_file_is_refused(tmp_path: Path) -> None:
-    """As pip does it with the options of the set-up; nothing is fetched for it."""
-    (tmp_path / "one-1.0-py3-none-any.whl").write_bytes(b"another file")
-    (tmp_path / "in").write_text(f"one==1.0 --hash=sha256:{'0' * 64}\n")
-    options = ["--no-index", "--find-links", str(tmp_path), "--require-hashes", "--no-deps", "--dry-run"]
-    command = [sys.executable, "-m", "pip", "install", *options, "--requirement", str(tmp_path / "in")]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
-    assert done.returncode != 0
-    assert "THESE PACKAGES DO NOT MATCH THE HASHES" in done.stderr

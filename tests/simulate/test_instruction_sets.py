@@ -41,12 +41,6 @@ def test_every_symbol_of_a_kernel_is_in_its_own_namespace() -> None:
         assert outsiders(path, instructions) == [], path
 
 
-def test_the_check_finds_a_symbol_outside() -> None:
-    """The same check on an object that is no kernel."""
-    batch = next(path for path in objects() if path.name == "batch.cpp.o")
-    assert any("run_batch" in symbol for symbol in outsiders(batch, "baseline"))
-
-
 def test_wide_instructions_are_asked_for_by_kernels_only() -> None:
     commands = json.loads((BUILD / "compile_commands.json").read_text(encoding="utf-8"))
     for command in commands:

@@ -82,13 +82,6 @@ def test_only_sets_change_and_none_is_too_narrow(tuned: TuningResult) -> None:
     assert any("widths were below 0.01" in note for note in tuned.notes)
 
 
-def test_no_set_lets_its_grey_box_reach_the_papers_improvement(tuned: TuningResult) -> None:
-    """78 % is beyond what the supply leaves; its tuning stays below even a third of that."""
-    by_name = {one.name: one for one in tuned.held_out}
-    before, after = by_name["steps"].mse_before.sum(), by_name["steps"].mse_after.sum()
-    assert after > 0.75 * before
-
-
 @pytest.mark.parametrize("strategy", ["sf", "both"])
 def test_factors_are_tuned_at_the_20_volts_of_table_8(model: Model, strategy: str) -> None:
     loops = Loops(model, strategy, BEFORE, 1)
@@ -112,12 +105,3 @@ def test_two_sided_training_would_be_won_by_doing_nothing(model: Model) -> None:
     result = experiment.run(np.stack([BEFORE, idle]), loops.plant)
     cost = (result.itae + result.itau).sum(axis=1)
     assert cost[1] < 0.5 * cost[0]
-
-
-@pytest.mark.slow
-def test_the_same_seed_gives_the_same_controllers(model: Model) -> None:
-    one, other = (
-        tune(model, method="paper", strategy="mf", budget=40, seed=3, floors=False, threads=n) for n in (1, 2)
-    )
-    np.testing.assert_array_equal(one.after, other.after)
-    assert one.curves == other.curves

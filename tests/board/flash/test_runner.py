@@ -7,7 +7,6 @@ import select
 import signal
 import subprocess
 import sys
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -15,7 +14,6 @@ import pytest
 from greywhale.base.errors import UserError
 from greywhale.board.flash import runner
 from greywhale.board.flash.runner import Tool, run_tool
-from tests.support.strangers import plant, ran
 
 
 def tool(*command: str, limit_s: float = 60.0) -> Tool:
@@ -67,14 +65,6 @@ def test_a_tool_that_hangs_or_is_interrupted_is_ended(monkeypatch: pytest.Monkey
     with pytest.raises((UserError, KeyboardInterrupt), match=r"0\.3 s" if end == "hangs" else None):
         run_tool(waiting, look)
     assert started[0].returncode == -signal.SIGTERM
-
-
-def test_a_tool_imports_nothing_from_the_current_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """PlatformIO, as it is called where a firmware is built."""
-    plant(tmp_path)
-    monkeypatch.chdir(tmp_path)
-    assert "PlatformIO" in run_tool(tool(sys.executable, "-m", "platformio", "--version"), lambda text: None)
-    assert ran(tmp_path) == set()
 
 
 def test_what_the_tool_started_ends_with_it(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -12,7 +12,6 @@ from greywhale.arm.plants import column
 from greywhale.base.errors import UserError
 from greywhale.base.types import Floats
 from greywhale.files.arm import default_arm, load_arm
-from greywhale.files.trajectory import Trajectory
 from greywhale.motion import human_reaches, multi_steps, steps
 from greywhale.simulate import PLANT_COLUMNS, Experiment, leader_slices, plant_row
 from greywhale.tune.judge.floor import saturation_floor
@@ -115,26 +114,12 @@ def test_the_ideal_controller_does_not_look_ahead() -> None:
     assert np.abs(angles[0][420:] - angles[1][420:]).max() > 0.01
 
 
-def test_it_stands_still_at_rest_and_arrives() -> None:
-    floor = saturation_floor(steps(0.8, 0.5, 1.0), default_arm())
-    assert np.ptp(floor.angles[1000:2000], axis=0).max() < 1e-4, "no swinging, which would win a head start by luck"
-    assert np.abs(floor.angles[-200:] - floor.leader[-200:]).max() < 3e-3
-
-
 def test_what_a_motor_can_keep_up_with_has_no_multiple() -> None:
     floor = saturation_floor(human_reaches(1, 5.0), default_arm())
     assert floor.total < 1e-4
     assert floor.multiple(np.full(4, 0.001)) == (None,) * 5
     slow = saturation_floor(human_reaches(1, 5.0), load_arm("grey_box"))
     assert slow.limited[0], "the grey box's yaw turns 1.6 rad/s at most"
-
-
-def test_a_leader_that_never_rests_is_bounded_by_nothing() -> None:
-    time = np.arange(0.0, 3.0, 0.01)
-    motion = Trajectory(time, np.repeat(1.5 * np.sin(12.0 * time)[:, None], 4, axis=1))
-    floor = saturation_floor(motion, load_arm("grey_box"), wait_s=0.0)
-    np.testing.assert_array_equal(floor.bound, 0.0)
-    assert floor.limited[4]
 
 
 def test_knowing_the_leader_later_costs_more() -> None:
@@ -146,14 +131,6 @@ def test_knowing_the_leader_later_costs_more() -> None:
     np.testing.assert_allclose((late.mse - now.mse) * 1.5, 0.004, rtol=0.25)
     assert "4 ms late" in late.how
     assert "late" not in now.how
-
-
-def test_the_number_of_threads_changes_no_bit_and_arm_and_row_are_the_same() -> None:
-    motion = steps(0.5, 0.4, 0.4)
-    one = saturation_floor(motion, default_arm(), threads=1)
-    two = saturation_floor(motion, plant_row(default_arm()), threads=2)
-    np.testing.assert_array_equal(one.angles, two.angles)
-    np.testing.assert_array_equal(one.bound, two.bound)
 
 
 @pytest.mark.parametrize(

@@ -65,11 +65,6 @@ def test_swings_are_counted_as_defined(kind: type) -> None:
     assert reversals.max() > 5
 
 
-def test_swings_refuses_rows_that_are_not_there() -> None:
-    with pytest.raises(ValueError, match="rows must lie within the traces"):
-        _native.swings(np.zeros((1, 10, 4), dtype=np.float32), 5, 11, 1.0)
-
-
 @pytest.fixture(scope="module")
 def margins() -> Margins:
     return Margins(ARM, ParameterTable.defaults(), PLANTS)

@@ -82,18 +82,6 @@ def test_table_11_has_the_three_measures_with_improvement_and_floor() -> None:
     json.dumps(table.as_dict(), allow_nan=False)
 
 
-def test_overshoot_and_settling_time_stand_in_every_table_of_a_motion() -> None:
-    calm, brisk = (
-        replace(whole, joints=tuple(replace(one, overshoot_percent=over, settling_s=0.5) for one in whole.joints))
-        for whole, over in ((evaluation(BEFORE), 4.0), (evaluation(AFTER), 31.4))
-    )
-    for table in (tables.step_performance(calm, brisk), tables.motion_performance("multi-steps", calm, brisk)):
-        assert row(table, "Joint 2", "Overshoot")["after"] == 31.4
-        assert row(table, "Joint 2", "Settling")["before"] == 0.5
-        assert "MORE OVERSHOOT than before: joint 0 from 4 to 31 %" in table.text()
-    assert "OVERSHOOT" not in tables.step_performance(brisk, calm).text()
-
-
 def test_joints_that_are_not_in_use_have_no_row_and_no_column() -> None:
     before, after = (replace(evaluation(errors), joints_in_use=(0, 2)) for errors in (BEFORE, AFTER))
     labels = {one["row"] for one in tables.step_performance(before, after).as_dict()["rows"]}

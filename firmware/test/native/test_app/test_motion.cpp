@@ -120,22 +120,6 @@ TEST_CASE("behind a request none begins late until the ticks that it may delay a
   }
 }
 
-TEST_CASE("a pot that goes to a rail stops the arm within three ticks and is named") {
-  for (std::uint8_t pot = 0; pot < 8; ++pot) {
-    Following arm;
-    arm.set_count(pot, pot % 2 ? 0 : 1023);
-    arm.run(2);
-    CHECK(board.drivers);
-    arm.run(1);
-    CHECK(arm.stopped_by(pot % 2 ? wire::Fault::pot_low : wire::Fault::pot_high, pot));
-    CHECK(arm.refused(wire::ClearFaultRequest{}).code == wire::NackCode::pot_bad);
-    arm.set_count(pot, 512);
-    arm.run(5);
-    CHECK(arm.clear_fault() == wire::State::disabled);
-    CHECK_FALSE(board.drivers);
-  }
-}
-
 TEST_CASE("a late tick stops the arm at once and is counted") {
   Following arm;
   board.late = true;

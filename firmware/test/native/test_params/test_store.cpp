@@ -115,19 +115,6 @@ TEST_CASE("what is saved is found at boot, the banks taking turns") {
   }
 }
 
-TEST_CASE("one store saves again and again without a boot in between") {
-  FakeEeprom eeprom;
-  Store store(eeprom);
-  params::Table loaded;
-  store.load(loaded);
-  for (unsigned i = 0; i < 5; ++i) {
-    const params::Table table = variant(i);
-    EXPECT(save(store, table) == wire::SaveState::saved);
-    FakeEeprom copy = eeprom;
-    CHECK(same(boot(copy), table));
-  }
-}
-
 TEST_CASE("a power cut at any write, with any torn byte, leaves the old or the new set whole") {
   long cuts = 0;
   long found_old = 0;
@@ -454,19 +441,4 @@ TEST_CASE("a table that changes while it is being saved is never stored as a mix
   }
   CHECK(stored > 0);
   CHECK(refused > 100);
-}
-
-TEST_CASE("each poll does at most one write and none while busy") {
-  FakeEeprom eeprom;
-  Store store(eeprom);
-  params::Table loaded;
-  store.load(loaded);
-  const params::Table table = variant(3);
-  store.save(table);
-  while (store.state() == wire::SaveState::saving) {
-    const int before = eeprom.writes;
-    store.poll();  // the fake throws on any use while it is busy
-    EXPECT(eeprom.writes <= before + 1);
-  }
-  CHECK(store.state() == wire::SaveState::saved);
 }
