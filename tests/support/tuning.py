@@ -41,7 +41,7 @@ def shorten(patch: pytest.MonkeyPatch) -> None:
     patch.setattr(lockstep, "KEPT", 2)  # two candidates a joint are enough to try the last judgement,
     patch.setattr(default, "CALMER", default.CALMER[::4])  # and of those with less voltage or integral three
     patch.setattr(training, "moves", partial(training.moves, hold_s=0.6))
-    patch.setattr(training, "HUMAN_S", 5.0)
+    patch.setattr(training, "HUMAN_S", 3.0)
     patch.setattr(training, "SLOW_S", 4.0)
     patch.setattr(default, "scale_of", shared)
     patch.setattr(default, "REST_LONG_S", REST_S)
