@@ -25,6 +25,7 @@ def roll_arm(make_arm: Any, friction: dict[str, float], gear: dict[str, float], 
     return make_arm(gravity=0.0, joint_3=joint, **changes)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("share", [0.0, 0.5])
 def test_load_friction_moves_as_an_independent_integration_says(make_arm: Any, share: float) -> None:
     """A spring between motor and link, driven to and fro, with an outside load that the gear must pass on."""

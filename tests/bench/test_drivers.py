@@ -119,12 +119,14 @@ def usual() -> np.ndarray:
     return following_error("drv8838", 0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("chip", "signals"), [("tb6612", 1), ("bts7960", 2), ("drv8871", 3)])
 def test_an_arm_follows_alike_through_every_driver_that_brakes(chip: str, signals: int, usual: np.ndarray) -> None:
     """But for where friction stops them, which the noise of the potentiometers decides. Coasting costs far more."""
     assert following_error(chip, signals) == pytest.approx(usual, rel=0.1)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("chip", "signals"), [("l298n", 1), ("drv8871", 2)])
 def test_an_arm_follows_through_drivers_that_coast(chip: str, signals: int, usual: np.ndarray) -> None:
     """Short pulses give hardly any current, so it stays behind. By the default limit a joint would count as stalled."""
@@ -133,6 +135,7 @@ def test_an_arm_follows_through_drivers_that_coast(chip: str, signals: int, usua
     assert np.any(found > 2.0 * usual)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("end", ["stop", "reset", "hang"])
 @pytest.mark.parametrize(("chip", "signals"), [("l298n", 1), ("drv8871", 2), ("l298n-jumpers", 3)])
 def test_no_motor_is_driven_after_the_end(chip: str, signals: int, end: str) -> None:

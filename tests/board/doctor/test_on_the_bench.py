@@ -65,6 +65,7 @@ def test_open_inputs_of_joints_that_are_not_in_use_are_no_trouble(capsys: pytest
 EXIT_CODES = {"refused": 1, "noted": 0}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("fault", [one for one in FAULTS if one.verb == "doctor"], ids=lambda one: one.name)
 def test_doctor_names_it_and_no_motor_is_driven(
     bench: RunningBench, capsys: pytest.CaptureFixture[str], fault: Fault

@@ -21,6 +21,7 @@ def rows(seconds: float) -> np.ndarray:
     return np.arange(0.0, seconds, 0.016)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("arm", ["white_box", 4])
 def test_a_design_tells_far_more_than_a_hand_and_is_safe_on_every_arm_of_its_family(arm: str | int) -> None:
     made = design(load_arm(arm) if isinstance(arm, str) else random_arm(arm), POSE, seconds=SECONDS, budget=40)
