@@ -24,10 +24,6 @@ def states(count: int = 500) -> tuple[Floats, Floats]:
     return random.uniform(-np.pi, np.pi, (count, 4)), random.uniform(-8.0, 8.0, (count, 4))
 
 
-def body_of(arm: str) -> Floats:
-    return plant_row(load_arm(arm))[:BODY].copy()
-
-
 @pytest.mark.parametrize("arm", ARMS)
 def test_gives_the_bits_of_one_state_at_a_time(arm: str) -> None:
     parameters = load_arm(arm)
@@ -37,21 +33,6 @@ def test_gives_the_bits_of_one_state_at_a_time(arm: str) -> None:
     np.testing.assert_array_equal(
         _native.rigid_body_bias(body, q, v), [one.bias(*rows) for rows in zip(q, v, strict=True)]
     )
-
-
-def test_takes_any_layout_and_no_states_at_all() -> None:
-    body, (q, v) = body_of("default"), states(8)
-    every_other = _native.rigid_body_bias(body, q[::2], v[::2])
-    np.testing.assert_array_equal(every_other, _native.rigid_body_bias(body, q, v)[::2])
-    assert _native.rigid_body_mass_matrix(body, q[:0]).shape == (0, 4, 4)
-
-
-def test_wrong_lengths_are_refused() -> None:
-    body, (q, v) = body_of("default"), states(8)
-    with pytest.raises(ValueError, match="differ in length"):
-        _native.rigid_body_bias(body, q, v[:7])
-    with pytest.raises(TypeError):
-        _native.rigid_body_bias(body[:10], q, v)
 
 
 @pytest.mark.parametrize("name", sorted(arm_names()))

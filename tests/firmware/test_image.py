@@ -38,19 +38,6 @@ def test_a_babbling_host_delays_no_tick_of_a_moving_arm_and_ends_in_a_fault(benc
     assert schema.ClearFaultReply.unpack(bench.ask(schema.ClearFaultRequest)).state == schema.State.DISABLED
 
 
-def test_no_tick_is_late_while_a_set_is_staged_applied_and_saved_with_telemetry_on(bench: BoardWithImage) -> None:
-    bench.ask(schema.TelemetryRequest, struct.pack("<H", 1))
-    for i, value in enumerate(schema.DEFAULTS):
-        bench.ask(schema.ParamSetRequest, struct.pack("<Hi", i, value))
-    bench.ask(schema.ParamApplyRequest, struct.pack("<H", schema.param_crc(schema.DEFAULTS)))
-    bench.ask(schema.ParamSaveRequest)
-    bench.wait(1500)
-    seen = bench.status()
-    assert seen.save_state == schema.SaveState.SAVED
-    assert seen.late_ticks == 0
-    assert seen.tick_us_max < 500
-
-
 def test_the_board_counts_the_sets_that_were_stored(bench: BoardWithImage) -> None:
     assert bench.status().saves == 0, "its EEPROM is blank"
     values = list(schema.DEFAULTS)

@@ -209,17 +209,6 @@ def test_the_package_itself_runs_and_not_the_checkout(alone: Installation) -> No
     assert not any((alone.tools / name).exists() for name in ("cc", "gcc", "g++", "c++", "avr-gcc", "pio"))
 
 
-@pytest.mark.parametrize("verb", ["sim", "demo"])
-def test_without_the_bench_one_sentence_says_what_to_install(alone: Installation, verb: str) -> None:
-    answer = alone.run("greywhale", verb)
-    assert answer.returncode == 1
-    assert answer.stdout == ""
-    assert answer.stderr == (
-        "greywhale: the simulated bench is a package of its own, greywhale-sim, and is not installed; "
-        "run `pip install greywhale-sim`, or `make setup` in a checkout.\n"
-    )
-
-
 @pytest.mark.parametrize("board", BOARDS)
 def test_a_board_is_flashed_tuned_and_recorded(alone: Installation, board: str, tmp_path: Path) -> None:
     """The board is simulated by the checkout, in a process of its own; the real avrdude writes the packaged image."""
@@ -234,20 +223,6 @@ def test_a_board_is_flashed_tuned_and_recorded(alone: Installation, board: str, 
         alone.ask("record", "--port", bench.port, "--enable", "--seconds", "2", "--out", str(log))
         assert len(log.read_text().splitlines()) > 2000
         alone.ask("evaluate", str(log))
-
-
-def test_without_avrdude_flash_says_what_to_install(alone: Installation, tmp_path: Path) -> None:
-    bare = Installation(alone.folder, tmp_path)
-    answer = bare.run("greywhale", "flash", "--port", "/dev/null")
-    assert answer.returncode == 1
-    assert answer.stderr.startswith("greywhale: avrdude, which writes the firmware onto a board, is not installed;")
-
-
-def test_building_ones_own_firmware_says_what_to_install(alone: Installation) -> None:
-    with BenchProcess("--blank", "--speed", "max") as bench:
-        answer = alone.run("greywhale", "flash", "--port", bench.port, "--firmware", str(ROOT / "firmware"))
-    assert answer.returncode == 1
-    assert "PlatformIO, which builds the firmware from its source, is not installed" in answer.stderr
 
 
 def test_the_bench_runs_from_its_wheel_with_its_own_library(with_bench: Installation) -> None:

@@ -44,18 +44,3 @@ def test_a_hang_and_a_crash_are_failures_with_the_output_so_far(compile_avr: Com
     crashed = run_elf(str(compile_avr(PRINT.replace("END", "*(volatile uint8_t *)0x7000 = 1;"), "atmega2560")))
     assert (crashed.returncode, crashed.stdout) == (1, "test.cpp:1:first:PASS\nlow\n")
     assert "crashed at address 0x" in crashed.stderr
-
-
-@pytest.mark.parametrize(
-    ("arguments", "words"),
-    [
-        (["missing.elf"], "missing.elf cannot be opened"),
-        (["x.elf", "--millivolts", "1,two"], "not a list of up to 8 voltages"),
-        (["x.elf", "--mcu", "atmega32"], "invalid choice"),
-    ],
-)
-def test_bad_usage_is_exit_code_2(arguments: list[str], words: str) -> None:
-    result = run_elf(*arguments)
-    assert result.returncode == 2
-    assert words in result.stderr
-    assert "Traceback" not in result.stderr

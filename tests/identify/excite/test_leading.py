@@ -117,18 +117,6 @@ def test_every_point_is_played_once_and_in_its_turn(lose: float, delay: int, eve
     assert leading.slowest == 1.0
 
 
-def test_the_board_has_points_in_store_and_is_never_sent_more_than_it_has_room_for() -> None:
-    board = Board(delay=40)
-    leading = Leading(cast(Device, board), BEGUN, PLAN, tracking_limit=0.9)
-    store = []
-    for _ in range(3000):
-        board.live()
-        leading.keep_ahead(board.tick, sample(board.tick))
-        store.append(len(board.queue))
-    assert min(store[500:]) >= 5
-    assert board.sent == leading.points, "nothing was refused for want of room and sent again"
-
-
 def test_the_motion_begins_when_the_soft_start_is_over() -> None:
     board = Board()
     leading = Leading(cast(Device, board), BEGUN, PLAN, tracking_limit=0.9)
