@@ -16,7 +16,7 @@ from greywhale.files.log import Log
 from greywhale.files.log.layout import Origin
 from greywhale.motion import Settings, evaluate
 from greywhale.motion.delay import correlations
-from greywhale.motion.runs import gap_free_runs, last_part, resting
+from greywhale.motion.runs import gap_free_runs, last_part
 
 STEP = 0.5
 TIME = np.arange(0, 10, 0.001)
@@ -191,13 +191,6 @@ def test_nothing_to_measure_is_said() -> None:
     state = np.array(["following" if row == 5 else "disabled" for row in range(10)])
     with pytest.raises(UserError, match="nothing to measure"):
         evaluate(log(time, time, time, state))
-
-
-@given(st.lists(st.floats(-1, 1), min_size=1, max_size=60), st.integers(1, 20), st.floats(0, 1))
-def test_rest_looks_back_over_exactly_its_window(values: list[float], window: int, band: float) -> None:
-    angle = np.array(values)
-    expected = [k >= window and np.ptp(angle[k - window : k + 1]) <= band for k in range(len(angle))]
-    assert list(resting(angle, window, band)) == expected
 
 
 @given(st.lists(st.tuples(st.sampled_from([1, 2, 5]), st.booleans()), min_size=2, max_size=40))

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import json
 import os
-import re
 import shutil
 import subprocess
 import sys
@@ -21,7 +20,6 @@ import pytest
 
 from greywhale.board.flash.targets import BOARDS
 from greywhale.cli.story import BenchProcess
-from greywhale.cli.verbs import VERBS
 from tools import ROOT, dist
 from tools.oracles.wheelhouse import WHEELHOUSE
 from tools.setup import platformio
@@ -188,16 +186,6 @@ def test_no_wheel_is_built_with_an_image_of_other_sources(built: list[Path], tmp
     assert answer.returncode != 0
     assert "was built from other sources; run `make firmware`" in " ".join((answer.stdout + answer.stderr).split())
     assert not (tmp_path / "out").exists() or not list((tmp_path / "out").iterdir())
-
-
-EXPLAIN = "import sys; from greywhale.cli import entry; sys.exit(max(entry.run([v, '--help']) for v in sys.argv[1:]))"
-
-
-def test_every_verb_explains_itself(alone: Installation) -> None:
-    """In one process: a verb is a module that is imported when somebody asks for it."""
-    answer = alone.run("python", "-c", EXPLAIN, *VERBS)
-    assert answer.returncode == 0, answer.stderr
-    assert re.findall(r"^Usage: greywhale (\S+) ", answer.stdout, re.MULTILINE) == list(VERBS)
 
 
 def test_the_package_itself_runs_and_not_the_checkout(alone: Installation) -> None:

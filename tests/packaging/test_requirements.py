@@ -44,11 +44,6 @@ def test_the_outside_references_come_beside_the_projects_own_packages() -> None:
     assert not set(references) & set(pinned())
 
 
-def test_a_package_is_left_out_with_its_digests() -> None:
-    lines = ["a==1 \\", "    --hash=sha256:1", "B.c==2 \\", "    --hash=sha256:2 \\", "    --hash=sha256:3", "d==4"]
-    assert lock.without(lines, {"b-c"}) == ["a==1 \\", "    --hash=sha256:1", "d==4"]
-
-
 def test_all_that_is_asked_for_is_pinned() -> None:
     for asked, files in ((lock.build(), [lock.RUN]), (lock.page(), [lock.PAGE]), (lock.wanted(), [])):
         assert {lock.name_of(name) for name in asked} - set(pinned(*files)) == set()
