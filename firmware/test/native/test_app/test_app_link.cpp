@@ -1,4 +1,6 @@
-// The link as App serves it: telemetry, repeated and many requests.
+// The link as App serves it: telemetry, repeated and many requests, garbage.
+#include <random>
+
 #include "bench.h"
 
 using bench::Bench;
@@ -92,6 +94,42 @@ TEST_CASE("many requests at once are all answered, in their order, a few each ti
   int wrong = 0;
   for (std::size_t i = 0; i < 60; ++i) wrong += arm.frames[i].seq != i;
   CHECK(wrong == 0);
+}
+
+TEST_CASE("random bytes never turn a motor on, and afterwards the link works") {
+  Booted arm;
+  std::mt19937 random(20221);
+  for (int ms = 0; ms < 4000; ++ms) {
+    std::vector<std::uint8_t> noise(random() % 100);
+    for (auto& byte : noise) byte = static_cast<std::uint8_t>(random() % (random() % 2 ? 256 : 16));
+    arm.send_raw(noise);
+    arm.tick();
+    REQUIRE_FALSE(board.drivers);
+  }
+  arm.send_raw({0});
+  arm.run(50);
+  CHECK(arm.status().frames_bad > 1000);
+  CHECK(arm.state() == wire::State::disabled);
+}
+
+TEST_CASE("an enable frame with any one or two bits wrong does not turn the motors on") {
+  const auto good = Bench::frame(wire::EnableRequest{1000}, 5);
+  Booted arm;
+  const auto bits = good.size() * 8;
+  for (std::size_t a = 0; a < bits; ++a) {
+    for (std::size_t b = a; b < bits; ++b) {  // b == a: one bit
+      auto bad = good;
+      bad[a / 8] = static_cast<std::uint8_t>(bad[a / 8] ^ (1u << (a % 8)));
+      if (b != a) bad[b / 8] = static_cast<std::uint8_t>(bad[b / 8] ^ (1u << (b % 8)));
+      arm.send_raw(bad);
+      arm.send_raw({0});
+      arm.service();
+      board.tx_room = hal::tx_capacity;
+      REQUIRE_FALSE(board.drivers);
+    }
+  }
+  arm.run(2);
+  CHECK(arm.enable() == wire::State::soft_start);  // the whole one does
 }
 
 TEST_CASE("lost bytes are counted") {
