@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from greywhale.base.errors import UserError
+from greywhale.commission.arm_on_port import ArmOnPort
 from greywhale.commission.choose import confirm
 from greywhale.commission.judge import BEARABLE
 from greywhale.commission.result import CommissioningResult
