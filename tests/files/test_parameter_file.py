@@ -71,7 +71,7 @@ def test_a_backup_of_an_older_layout_gets_the_defaults_of_what_it_lacks(tmp_path
         ("period_ms = 1", "", "period_ms is missing"),
         ("unrest_rate = 6", "", "unrest_rate is missing"),
         ("period_ms = 1", "period_ms = 1\nperiod = 2", "unknown key period; perhaps period_ms is meant."),
-        ("period_ms = 1", "period_ms = true", "period_ms is True, but it must be a number"),
+        ("period_ms = 1", "period_ms = true", "period_ms is true, but it must be a number"),
         ("period_ms = 1", "period_ms = inf", "period_ms is inf"),
         ("period_ms = 1", "period_ms =", "not valid TOML"),
         ("limit_min = -2.5", "limit_min = 2.6", "joint0.limit_min is 2.6"),

@@ -6,6 +6,7 @@ import json
 import os
 import subprocess
 import tomllib
+from collections.abc import Callable, Iterable
 from dataclasses import asdict, fields
 from fractions import Fraction
 from pathlib import Path
@@ -17,11 +18,13 @@ import pytest
 from greywhale.base.errors import UserError
 from greywhale.board.calibrate.solve import Pose, solve
 from greywhale.board.calibrate.sweep import Sweep
-from greywhale.files import controller
+from greywhale.files import controller, parameter_file
 from greywhale.files.paper_tables import paper_table
 from greywhale.fuzzy.exact import Law
 from greywhale.fuzzy.settings import ANGLE_UNIT, SET_UNIT, JointSettings
-from greywhale.protocol.schema import PARAMETER_BY_NAME, Refusal
+from greywhale.protocol.joints import ALL
+from greywhale.protocol.schema import LAYOUT, PARAMETER_BY_NAME, PARAMETERS, Refusal
+from greywhale.protocol.table import ParameterTable
 from tests.page.tuning import tuning
 from tools import ROOT
 from tools.site.build import write_bench
@@ -85,6 +88,23 @@ SLIPS = (
     ("[[joint]]", "tuning = 5\n[[joint]]"),
     ("[[joint]]", "[travel]\nspeed_per_volt = [1, 2, 3]\ngravity_1 = 0.5\n[[joint]]"),
 )
+PARAMETER_SLIPS = (
+    *[
+        ("period_ms = 1 ", one)
+        for one in ("period_ms = 51 ", "period_ms = 1.5 ", "", "period = 2 ", "period_ms = true ", "period_ms = inf ")
+    ],
+    *[
+        ("period_ms = 1 ", f"period_ms = {one} ")
+        for one in ('"x"', "[1, 2.5, {a = 1}]", "{a = [true]}", "2023-01-01", "=")
+    ],
+    *[("kp = 0.513", f"kp = {one}") for one in ("1e-9", "65", "-0.1", "1e300")],
+    ("unrest_rate = 6", ""),
+    ("motor_sign = 1", "motor_sign = 0"),
+    ("limit_min = -2.5", "limit_min = 2.6"),
+    ("[leader1]", "[leader4]"),
+    ("[leader1]", "[leader0.inside]"),
+)
+OTHERS = ("", "# nothing", "a = 1", "time_s,leader_0\n0,1", "[[joint]]\nmotor = 1", "supply_v = 3", "x = [")
 TRAVEL = """
 [travel]
 speed_per_volt = [0.75, 1, 1.5, {speed}]
@@ -96,7 +116,7 @@ gravity_2 = 0
 """
 
 
-def answers_to_files() -> list[dict[str, Any]]:
+def answers_to_controllers() -> list[dict[str, Any]]:
     """Controller files and others, each with its raw values or with the sentence that refuses it."""
     sound = "\n".join(
         line for line in paper_table("before_tuning").read_text("utf-8").splitlines() if not line.startswith("source")
@@ -105,22 +125,44 @@ def answers_to_files() -> list[dict[str, Any]]:
     texts += [
         sound.replace("kp = ", "kq = "),
         sound.replace("[[joint]]", "[[joint]]\nmotor = 1"),
-        "",
-        "# nothing",
-        "a = 1",
     ]
     texts += [sound[: sound.rindex("[[joint]]")], sound + TRAVEL.format(speed=2), sound + TRAVEL.format(speed=9)]
-    texts += ["time_s,leader_0\n0,1", "[[joint]]\nmotor = 1", "[joint0]\nkp = 1", "supply_v = 3", "x = ["]
+    return answers([*texts, *OTHERS, "[joint0]\nkp = 1"], lambda path: controller.load(path).raw_values())
+
+
+def answers(texts: Iterable[str], read: Callable[[Path], Any]) -> list[dict[str, Any]]:
+    """Each text with what the host reads from a file of it, or with the sentence that refuses it."""
     cases = []
     for text in texts:
         told: dict[str, Any] = {"text": text, "raw": None, "error": ""}
-        Path("c.toml").write_text(text, "utf-8")
+        path = Path("c.toml")
+        path.write_text(text, "utf-8")
         try:
-            told["raw"] = controller.load("c.toml").raw_values()
+            told["raw"] = read(path)
         except UserError as error:
             told["error"] = error.message
         cases.append(told)
     return cases
+
+
+def answers_to_parameter_files() -> list[dict[str, Any]]:
+    """Parameter files as the host writes them, of older layouts too, and others that a person has spoiled."""
+    chance = np.random.default_rng(1)
+    path = Path("p.toml")
+    texts = []
+    for _ in range(3):
+        values = {one.name: int(chance.integers(one.minimum, one.maximum + 1)) or 1 for one in PARAMETERS}
+        values |= {f"joint{joint}.limit_min": -25723 for joint in ALL}  # the least
+        parameter_file.save(path, ParameterTable.defaults().with_raw(values))
+        texts.append(path.read_text("utf-8"))
+    parameter_file.save(path, ParameterTable.defaults())
+    sound = path.read_text("utf-8")
+    for layout in range(1, LAYOUT):
+        newer = tuple(one.name.rpartition(".")[2] + " = " for one in PARAMETERS if one.since > layout)
+        texts.append("".join(line for line in sound.splitlines(keepends=True) if not line.startswith(newer)))
+    texts += [sound, *(sound.replace(slip, made, 1) for slip, made in PARAMETER_SLIPS), *OTHERS, "[[joint]]\nkp = 1"]
+    assert len(set(texts)) == len(texts), "every slip is in the file"
+    return answers(texts, lambda path: parameter_file.load(path).raw)
 
 
 def calibrations() -> list[dict[str, Any]]:
@@ -161,13 +203,15 @@ def test_link_client_samples_law_files_bench_and_tuner_give_what_python_gives(
     golden, law, files = tmp_path / "golden.json", tmp_path / "law.json", tmp_path / "files.json"
     golden.write_text(json.dumps(tomllib.loads((ROOT / "shared/link/golden.toml").read_text("utf-8"))))
     law.write_text(json.dumps(numbers_of_the_law()))
-    files.write_text(json.dumps(answers_to_files()))
+    files.write_text(json.dumps(answers_to_controllers()))
+    parameters = tmp_path / "parameters.json"
+    parameters.write_text(json.dumps(answers_to_parameter_files()))
     calibrated = tmp_path / "calibrations.json"
     calibrated.write_text(json.dumps(calibrations()))
     tuned = tmp_path / "tuning.json"
     tuned.write_text(json.dumps(tuning()))
     given = {"CALIBRATIONS": calibrated, "GOLDEN": golden, "LAW": law, "CONTROLLER_FILES": files, "TUNING": tuned}
-    given |= {"SITE": tmp_path}
+    given |= {"PARAMETER_FILES": parameters, "SITE": tmp_path}
     environment = {**os.environ, **{name: str(path) for name, path in given.items()}}
     write_bench(tmp_path)
     done = subprocess.run(

@@ -79,6 +79,15 @@ def test_a_board_is_watched_driven_and_changed(context: BrowserContext, site: Si
         page.get_by_label("tracking_ms").press("Tab")
         press(page, "Apply")
         expect(page.get_by_role("button", name="Apply")).to_be_disabled()
+        backup = tmp_path / "backup.toml"
+        parameter_file.save(backup, DEFAULTS.with_raw({"supply_mv": 12_000}))
+        page.get_by_label("Restore a parameter file").set_input_files(backup)
+        changes = page.get_by_role("list", name="Changes").get_by_role("listitem")
+        expect(changes).to_have_text(["supply_mv15000 → 12000 mV", "tracking_ms300 → 200 ms"])
+        press(page, "Apply")
+        expect(page.get_by_text("The changes run; Store keeps them.")).to_be_visible()
+        press(page, "Store")
+        expect(page.get_by_text("What runs is stored.")).to_be_visible()
         page.get_by_label("Upload a controller.toml").set_input_files(wrong)
         with pytest.raises(UserError) as refused:
             controller.load(wrong)

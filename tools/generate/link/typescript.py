@@ -96,4 +96,5 @@ def _group(group: Group) -> list[str]:
             f"    [{_text(p.name)}, {_text(p.kind)}, {_text(p.unit)}, {p.lsb}, {p.minimum}, {p.maximum}, "
             f"{json.dumps(list(p.defaults))}, {json.dumps(p.nonzero)}, {below}, {_text(p.description)}],"
         )
-    return [*lines, "  ]],"]
+    since = f", {group.since}" if group.since > 1 else ""
+    return [*lines, f"  ]{since}],"]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 from greywhale.base.errors import UserError, cut
@@ -51,7 +52,9 @@ def load(path: str | Path) -> ParameterTable:
             raise UserError(f"{path}: {parameter.name} is missing; a parameter file holds all of them.")
         value = found[parameter.name]
         if isinstance(value, bool) or not isinstance(value, int | float):
-            raise UserError(f"{path}: {parameter.name} is {cut(repr(value))}, but it must be a number.")
+            raise UserError(
+                f"{path}: {parameter.name} is {cut(json.dumps(value, default=str))}, but it must be a number."
+            )
         try:
             values.append(parameter.to_raw_as_given(value))
         except UserError as error:

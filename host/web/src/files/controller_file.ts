@@ -6,6 +6,7 @@ import { LinkError, type Parameter } from "../link/declared";
 import { TABLE } from "../link/schema";
 import type { NamedText } from "../port";
 import { anyTable, list, number, require, table, text, whole, type Shape, type Toml, type TomlTable } from "./check";
+import { inFile, rawOf } from "./raw_value";
 import { readToml, refuseOtherKind } from "./toml";
 import { short } from "./words";
 
@@ -76,9 +77,9 @@ export function controllerIn({ name, text: content }: NamedText): ReadonlyMap<st
     throw error;
   }
   const raw = new Map<string, number>();
-  for (const [parameter, value] of others(data)) raw.set(parameter.name, rawOf(parameter, value, name));
+  for (const [parameter, value] of others(data)) raw.set(parameter.name, inFile(name, () => rawOf(parameter, value)));
   (data["joint"] as readonly TomlTable[]).forEach((found, joint) => entries(found, joint).forEach(({ key, parameter, value, scale }) => {
-    const stored = rawOf(parameter, value, name);
+    const stored = inFile(name, () => rawOf(parameter, value));
     if (!stored && value) {
       throw new LinkError(`${name}: joint[${joint}].${key} is ${short(value / scale)}, which the board would store as 0; `
         + `give 0, or at least ${short(parameter.lsb / scale)}.`);
@@ -99,12 +100,4 @@ function others(data: TomlTable): [Parameter, number][] {
     for (const key of OF_THE_ARM) found.push([TABLE.named(key), travel[key]!]);
   }
   return found.map(([parameter, value]) => [parameter, Number(value)]);
-}
-
-function rawOf({ name, lsb, unit, minimum, maximum }: Parameter, value: number, file: string): number {
-  const raw = Math.floor(value / lsb + 0.5);
-  if (raw >= minimum && raw <= maximum) return raw;
-  const of = unit && ` ${unit}`;
-  throw new LinkError(`${file}: ${name} is ${short(value)}${of}, which is out of range; `
-    + `choose a value from ${short(minimum * lsb)} to ${short(maximum * lsb)}${of}.`);
 }

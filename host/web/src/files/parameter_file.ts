@@ -1,7 +1,13 @@
 // The whole parameter table as TOML, as greywhale/files/parameter_file.py writes and reads it.
 
+import { LinkError } from "../link/declared";
 import { TABLE } from "../link/schema";
+import type { NamedText } from "../port";
 import { physicalText } from "../samples/log";
+import { isTable, type Toml, type TomlTable } from "./check";
+import { inFile, rawAsGiven } from "./raw_value";
+import { readToml, refuseOtherKind } from "./toml";
+import { advice, keyPath, quoted, short } from "./words";
 
 /** Every parameter; those of no group come first, as TOML asks. */
 export function parameterFile(raw: readonly number[]): string {
@@ -14,4 +20,43 @@ export function parameterFile(raw: readonly number[]): string {
   }
   const crc = TABLE.crc(raw).toString(16).padStart(4, "0");
   return `# greywhale parameters, CRC 0x${crc}\n\n${[...groups.values()].flat().join("\n")}\n`;
+}
+
+const NAMES = TABLE.parameters.map(({ name }) => name);
+
+/** Raw values of the whole table; a file of an older layout gets the defaults of what it lacks. An error is the host's sentence. */
+export function parametersIn({ name: file, text }: NamedText): number[] {
+  const data = readToml(text, file);
+  refuseOtherKind(data, file, "parameters");
+  const found = flat(data);
+  return inFile(file, () => {
+    const unknown = [...found.keys()].find((name) => !NAMES.includes(name));
+    if (unknown !== undefined) throw new LinkError(`unknown key ${keyPath([unknown])}; ${advice(unknown, NAMES)}.`);
+    const layout = TABLE.parameters.reduce((newest, { name, since }) => found.has(name) ? Math.max(newest, since) : newest, 1);
+    const raw = TABLE.parameters.map((parameter) => {
+      const { name } = parameter;
+      if (parameter.since > layout) return parameter.initial;
+      const value = found.get(name);
+      if (value === undefined) throw new LinkError(`${name} is missing; a parameter file holds all of them.`);
+      if (typeof value !== "number" && typeof value !== "bigint") throw new LinkError(`${name} is ${quoted(value)}, but it must be a number.`);
+      return rawAsGiven(parameter, Number(value));
+    });
+    requireOrder(raw);
+    return raw;
+  });
+}
+
+/** Values by parameter name: those of no group, and those of the groups' tables. */
+function flat(data: TomlTable): ReadonlyMap<string, Toml> {
+  return new Map(Object.entries(data).flatMap(([key, value]): [string, Toml][] =>
+    isTable(value) ? Object.entries(value).map(([name, inside]) => [`${key}.${name}`, inside]) : [[key, value]]));
+}
+
+function requireOrder(raw: readonly number[]): void {
+  for (const { name, index, lsb, below } of TABLE.parameters) {
+    if (!below) continue;
+    const other = TABLE.named(below);
+    if (raw[index]! < raw[other.index]!) continue;
+    throw new LinkError(`${name} is ${short(raw[index]! * lsb)} and ${below} is ${short(raw[other.index]! * other.lsb)} ${other.unit}; choose ${name} below ${below}.`);
+  }
 }

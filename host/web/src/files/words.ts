@@ -24,10 +24,18 @@ export function cut(text: string, most = LONGEST): string {
 
 /** A value as JSON, a float with its point. */
 export function quoted(value: Toml): string {
+  return cut(json(value));
+}
+
+function json(value: Toml): string {
   if (typeof value === "number") return Number.isInteger(value) && Math.abs(value) < 1e16 ? `${value}.0` : String(value);
-  if (typeof value === "bigint") return cut(String(value));
+  if (typeof value === "bigint") return String(value);
+  if (Array.isArray(value)) return `[${(value as readonly Toml[]).map(json).join(", ")}]`;
+  if (typeof value === "object" && !(value instanceof Date)) {
+    return `{${Object.entries(value).map(([key, one]) => `${json(key)}: ${json(one)}`).join(", ")}}`;
+  }
   const text = JSON.stringify(value instanceof Date ? value.toISOString() : value);
-  return cut(text.replace(/[^ -~]/g, (one) => `\\u${one.charCodeAt(0).toString(16).padStart(4, "0")}`));
+  return text.replace(/[^ -~]/g, (one) => `\\u${one.charCodeAt(0).toString(16).padStart(4, "0")}`);
 }
 
 /** A key as people write it: joint[2].sets.Ne_c. */

@@ -169,6 +169,7 @@ export type Parameter = {
   readonly nonzero: boolean;
   readonly below: string | null;
   readonly description: string;
+  readonly since: number; // the first layout that has it
 };
 
 /** All parameters in the order of their flat index, and their packed form. */
@@ -176,15 +177,15 @@ export class Table {
   readonly parameters: readonly Parameter[];
   private readonly byName: ReadonlyMap<string, Parameter>;
 
-  constructor(groups: readonly (readonly [name: string, count: number, fields: readonly ParameterSpec[]])[]) {
+  constructor(groups: readonly (readonly [name: string, count: number, fields: readonly ParameterSpec[], since?: number])[]) {
     const all: Parameter[] = [];
-    for (const [group, count, fields] of groups) {
+    for (const [group, count, fields, since = 1] of groups) {
       for (let element = 0; element < count; element++) {
         const prefix = group ? `${group}${element}.` : "";
         for (const [name, kind, unit, lsb, minimum, maximum, defaults, nonzero, below, description] of fields) {
           all.push({
             index: all.length, name: prefix + name, kind, unit, lsb, minimum, maximum,
-            initial: defaults[element] ?? 0, nonzero, below: below && prefix + below, description,
+            initial: defaults[element] ?? 0, nonzero, below: below && prefix + below, description, since,
           });
         }
       }

@@ -418,37 +418,37 @@ export const TABLE = new Table([
     ["unrest_rate", "u8", "1/s", 1, 1, 10, [6], false, null, "turns of the error in a second that are unrest; a swing to and fro has two"],
     ["unrest_time", "u8", "s", 1/10, 2, 60, [11], false, null, "time of unrest that becomes a fault"],
     ["unrest_action", "u8", "", 1, 0, 1, [0], false, null, "what unrest does: 0 turns the motors off, 1 goes on with the safe controllers, and turns the motors off at the next unrest"],
-  ]],
+  ], 2],
   ["", 1, [
     ["speed_limit", "u8", "rad/s", 1, 0, 100, [25], false, null, "a follower's reading that moves faster is a fault; 0 turns the check off"],
     ["runaway_limit", "u8", "rad", 1/128, 0, 192, [40], false, null, "way of a follower against its voltage of at least 2 V, without slowing down, that becomes a fault; 0 turns the check off"],
     ["stall_volts", "u8", "V", 1/10, 0, 250, [32], false, null, "voltage above which a follower must move: breakaway_volts of joints that have none. 0 turns the check off"],
     ["stall_time", "u8", "s", 1/4, 4, 240, [80], false, null, "time that a joint may be held back before that is a fault"],
-  ]],
+  ], 2],
   ["", 1, [
     ["estop_input", "u8", "", 1, 0, 2, [1], false, null, "the emergency stop: 0 is none, 1 a button that closes to ground (without one, nothing is stopped), 2 one that opens, so that a broken wire stops as well"],
-  ]],
+  ], 2],
   ["", 1, [
     ["driver", "u8", "", 1, 0, 3, [0], false, null, "the signals of a motor: 0 PWM and direction, 1 PWM and two directions (IN1, IN2), 2 two PWM inputs, both low between pulses, 3 two PWM inputs, both high between pulses; 1 to 3 need a Mega"],
-  ]],
+  ], 2],
   ["joint", 4, [
     ["ce_ticks", "u8", "control periods", 1, 1, 20, [1, 1, 1, 1], false, null, "the change of error is the error less that of so many control periods ago; more make the motor quieter and the controller later"],
-  ]],
+  ], 3],
   ["joint", 4, [
     ["speed_per_volt", "u8", "rad/(s V)", 1/32, 1, 255, [24, 24, 24, 24], false, null, "speed that a volt gives in the end, beyond those for gravity and friction"],
     ["time_constant", "u8", "ms", 4, 1, 255, [100, 100, 100, 100], false, null, "time in which the speed reaches 63 % of that"],
     ["breakaway_volts", "u8", "V", 1/10, 0, 250, [0, 0, 0, 0], false, null, "voltage beyond that against gravity with which the joint must move. 0: stall_volts"],
-  ]],
+  ], 4],
   ["", 1, [
     ["gravity_1", "i8", "V", 1/10, -127, 127, [0], false, null, "at joint 1 for link 1, level"],
     ["gravity_12", "i8", "V", 1/10, -127, 127, [0], false, null, "at joint 1 for what joint 2 carries, level"],
     ["gravity_2", "i8", "V", 1/10, -127, 127, [0], false, null, "at joint 2 for what it carries, level"],
-  ]],
+  ], 4],
   ["joint", 4, [
     ["ratio", "u8", "", 1/64, 6, 192, [64, 64, 64, 64], false, null, "motion scaling: the reference is the leader's angle times this"],
-  ]],
+  ], 5],
   ["", 1, [
     ["tremor_shift", "u8", "", 1, 0, 8, [0], false, null, "low-pass against a hand's tremor: each tick the reference takes 2^-tremor_shift of its distance from the leader, which delays it by 2^tremor_shift ticks; 0 is no filter"],
     ["clutch_input", "u8", "", 1, 0, 2, [1], false, null, "the clutch's pedal: 0 is none, 1 one that closes to ground while it disengages, 2 one that opens, so that a broken wire disengages as well"],
-  ]],
+  ], 5],
 ]);

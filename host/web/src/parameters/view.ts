@@ -1,7 +1,8 @@
 // All parameters of the board: read, change, store; a controller.toml onto the board, the whole set into a file.
 
 import { controllerIn } from "../files/controller_file";
-import { parameterFile } from "../files/parameter_file";
+import { parameterFile, parametersIn } from "../files/parameter_file";
+import { rawAsGiven } from "../files/raw_value";
 import type { Parameter } from "../link/declared";
 import { TABLE } from "../link/schema";
 import { button, download, el, fileField, setText } from "../parts/dom";
@@ -14,11 +15,13 @@ export class ParametersView implements View {
   readonly name = "Parameters";
   readonly element: HTMLElement;
   private readonly inputs: readonly HTMLInputElement[];
-  private readonly edited = new Map<number, number>(); // raw values by index, not yet on the board
+  private edited: ReadonlyMap<number, number> = new Map(); // raw values by index, not yet on the board
   private readonly said = el("p", { class: "quiet", attrs: { role: "status" } });
   private readonly apply = button("Apply", () => this.act(() => this.run()), { class: "primary", title: "Run what is changed here; it is not stored" });
-  private readonly store = button("Store", () => this.act(() => this.session.store()), { title: "Write what runs to the board's memory" });
+  private readonly store = button("Store", () => this.act(() => this.keepRunning()), { title: "Write what runs to the board's memory" });
   private readonly save = button("Save to a file", () => this.act(() => this.keep()), { title: "All parameters, as greywhale params restore takes them" });
+  private readonly discard = button("Discard", () => this.edit(new Map()), { title: "What is changed here is forgotten" });
+  private readonly changes = el("ul", { class: "differences", attrs: { tabindex: "0", "aria-label": "Changes" } });
   private waiting = 0;
   private last: Promise<void> = Promise.resolve();
 
@@ -30,8 +33,9 @@ export class ParametersView implements View {
       el("td", {}, physicalText(parameter, parameter.minimum)), el("td", {}, physicalText(parameter, parameter.maximum))));
     this.element = el("section", { class: "card" },
       el("div", { class: "tools" }, fileField("Upload a controller.toml", ".toml", (file) => file && this.act(() => this.upload(file))),
-        el("span", { class: "gap" }), this.save, this.store, this.apply),
-      this.said,
+        fileField("Restore a parameter file", ".toml", (file) => file && this.act(() => this.restore(file))),
+        el("span", { class: "gap" }), this.save, this.discard, this.store, this.apply),
+      this.said, this.changes,
       el("div", { class: "scroll" }, el("table", {}, el("thead", {}, el("tr", {}, ...head)), el("tbody", {}, ...rows))));
     session.parametersChanged.on(() => this.show());
     session.changed.on(() => this.refreshButtons());
@@ -46,19 +50,22 @@ export class ParametersView implements View {
     const { index, name, description } = parameter;
     const input = el("input", { type: "number", title: description, attrs: { step: "any", "aria-label": name } });
     input.addEventListener("change", () => {
-      const raw = Math.round(Number(input.value) / parameter.lsb);
-      const fits = input.value !== "" && raw >= parameter.minimum && raw <= parameter.maximum && !(parameter.nonzero && !raw);
-      if (!fits) {
-        const [low, high] = [parameter.minimum, parameter.maximum].map((one) => physicalText(parameter, one));
-        this.session.tell(`${name} is ${input.value || "empty"}; choose a value from ${low} to ${high}${parameter.nonzero ? ", other than 0" : ""}.`);
-      } else if (raw === this.session.parameters?.[index]) {
-        this.edited.delete(index);
-      } else {
-        this.edited.set(index, raw);
+      const next = new Map(this.edited);
+      try {
+        next.set(index, rawAsGiven(parameter, input.value === "" ? NaN : Number(input.value)));
+        if (next.get(index) === this.session.parameters?.[index]) next.delete(index);
+      } catch (error) {
+        this.session.tell((error as Error).message);
       }
-      this.show();
+      this.edit(next);
     });
     return input;
+  }
+
+  private edit(edited: ReadonlyMap<number, number>): void {
+    this.edited = edited;
+    setText(this.said, "");
+    this.show();
   }
 
   /** One thing after the other. */
@@ -76,8 +83,13 @@ export class ParametersView implements View {
     const raw = [...await this.session.readParameters()];
     for (const [index, value] of this.edited) raw[index] = value;
     await this.session.apply(raw);
-    this.edited.clear();
-    this.show();
+    this.edit(new Map());
+    setText(this.said, "The changes run; Store keeps them.");
+  }
+
+  private async keepRunning(): Promise<void> {
+    await this.session.store();
+    setText(this.said, "What runs is stored.");
   }
 
   /** Runs and stores what a controller file says; every other parameter keeps its value. */
@@ -91,24 +103,47 @@ export class ParametersView implements View {
     setText(this.said, `${file.name} runs and is stored; ${changed} ${changed === 1 ? "parameter has" : "parameters have"} changed.`);
   }
 
+  /** Shows where a parameter file differs from what runs. */
+  private async restore(file: NamedText): Promise<void> {
+    const raw = parametersIn(file);
+    await this.session.readParameters();
+    this.edit(new Map(raw.entries()));
+    const count = this.changed().length;
+    setText(this.said, !count ? `${file.name} is what runs.`
+      : `${file.name} changes ${count === 1 ? "one parameter" : `${count} parameters`}: Apply runs it, Store then keeps it.`);
+  }
+
   private async keep(): Promise<void> {
     download("parameters.toml", parameterFile(await this.session.readParameters()), "application/toml");
   }
 
+  /** The parameters that Apply would change. */
+  private changed(): Parameter[] {
+    const { parameters } = this.session;
+    return TABLE.parameters.filter(({ index }) => parameters && (this.edited.get(index) ?? parameters[index]) !== parameters[index]);
+  }
+
   private show(): void {
     const { parameters } = this.session;
+    const changed = this.changed();
     TABLE.parameters.forEach((parameter, place) => {
       const input = this.inputs[place]!;
       const raw = this.edited.get(parameter.index) ?? parameters?.[parameter.index];
       if (document.activeElement !== input) input.value = raw === undefined ? "" : physicalText(parameter, raw);
-      input.classList.toggle("edited", this.edited.has(parameter.index));
+      input.classList.toggle("edited", changed.includes(parameter));
     });
+    this.changes.hidden = !changed.length;
+    this.changes.replaceChildren(...changed.map((parameter) => {
+      const [before, after] = [parameters![parameter.index]!, this.edited.get(parameter.index)!].map((raw) => physicalText(parameter, raw));
+      return el("li", {}, el("span", {}, parameter.name), el("span", {}, `${before} → ${after} ${parameter.unit}`));
+    }));
     this.refreshButtons();
   }
 
   private refreshButtons(): void {
     const may = !this.waiting && this.session.link.open && this.session.driver.you;
-    this.apply.disabled = !may || !this.edited.size;
+    this.apply.disabled = !may || !this.changed().length;
+    this.discard.disabled = this.waiting > 0 || !this.edited.size;
     this.store.disabled = !may;
     this.save.disabled = this.waiting > 0 || !this.session.link.open;
   }

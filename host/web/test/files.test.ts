@@ -1,0 +1,38 @@
+// A controller.toml and a parameter file give the raw values that the host finds in them, or are refused in the host's
+// words; what the page writes, it reads.
+import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import { test } from "node:test";
+import { controllerIn } from "../src/files/controller_file";
+import { parameterFile, parametersIn } from "../src/files/parameter_file";
+import type { NamedText } from "../src/port";
+
+type Case<Raw> = { text: string; raw: Raw | null; error: string };
+
+function compare<Raw>(given: string, read: (file: NamedText) => Raw): Case<Raw>[] {
+  const cases = JSON.parse(readFileSync(process.env[given]!, "utf8")) as Case<Raw>[];
+  assert.ok(cases.length > 20);
+  for (const { text, raw, error } of cases) {
+    let told = "";
+    try {
+      assert.deepEqual(read({ name: "c.toml", text }), raw);
+    } catch (problem) {
+      if (raw) throw problem;
+      told = (problem as Error).message;
+    }
+    // Where a file is no TOML, each parser has words of its own for the reason.
+    const same = error.startsWith("c.toml: not valid TOML") && !error.includes("CSV") ? [told.slice(0, 22), error.slice(0, 22)] : [told, error];
+    assert.equal(same[0], same[1], text.slice(0, 400));
+  }
+  return cases;
+}
+
+test("each controller file is read or refused as the host does", () => {
+  compare("CONTROLLER_FILES", (file) => Object.fromEntries(controllerIn(file)));
+});
+
+test("each parameter file is read or refused as the host does, and what is written is read", () => {
+  const sound = compare("PARAMETER_FILES", parametersIn).filter(({ raw }) => raw);
+  assert.ok(sound.length > 5);
+  for (const { raw } of sound) assert.deepEqual(parametersIn({ name: "p.toml", text: parameterFile(raw!) }), raw);
+});
