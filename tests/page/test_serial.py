@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 
 import pytest
@@ -17,6 +18,7 @@ from greywhale.files import controller, parameter_file
 from greywhale.files.log import read_log
 from greywhale.files.paper_tables import paper_table
 from greywhale.protocol.table import ParameterTable
+from greywhale_sim.hands import ENDS_DEG
 from greywhale_sim.lockstep import LockStepBench
 from greywhale_sim.words import lock_step
 from tests.page.barriers import DARK_AND_NARROW, require_no_barrier
@@ -39,6 +41,14 @@ def hold(page: Page, bench: LockStepBench, angle: float) -> None:
     """Bring both arms into a pose, every joint at an angle, and hold them there for a while of the board's time."""
     bench.command(f"hand both {angle} {angle} {angle} {angle} 0.3")
     live(page, bench, 0.8)
+
+
+def sweep(page: Page, bench: LockStepBench, pot: int) -> None:
+    """Turn a joint to both ends, and say that it is done; the page asks for it."""
+    name = f"{('leader', 'follower')[pot // 4]} joint {pot % 4}"
+    expect(page.get_by_role("main")).to_contain_text(f"Now {name}")
+    live(page, bench, bench.command(f"turn {name.replace(' joint', '')} 0.1")["arrives_s"] - bench.bench.time_s)
+    press(page, "Done")
 
 
 def live(page: Page, bench: LockStepBench, seconds: float) -> None:
@@ -95,14 +105,19 @@ def test_a_board_is_watched_driven_and_changed(context: BrowserContext, site: Si
         page.get_by_label("Upload a controller.toml").set_input_files(wanted)
         expect(page.get_by_text("controller.toml runs and is stored")).to_be_visible()
 
-        press(page, "Calibrate", "Begin the sweep")
-        for end in (-1.2, 1.2):
-            hold(page, bench, end)
-        press(page, "End the sweep")
-        for place, angle in (("first", 0.0), ("second", 1.0)):
+        press(page, "Calibrate", "Begin the sweeps")
+        bench.command("mistake pot-swapped:leader0")
+        sweep(page, bench, 0)
+        expect(page.get_by_text("leader potentiometer 1 did: their wires are swapped")).to_be_visible()
+        bench.command("mistake none")
+        press(page, "Go on")
+        for number in range(len(POTS)):
+            sweep(page, bench, number)
+        expect(page.get_by_text("All potentiometers turn with their joints.")).to_be_visible()
+        for pose, angle in (("first pose", 0.0), ("second pose", 1.0), ("first pose again", 0.0), ("third pose", -0.5)):
             hold(page, bench, angle)
-            press(page, f"Take the {place} pose")
-            expect(page.get_by_role("main")).to_contain_text(f"{place.capitalize()} pose is taken.")
+            press(page, f"Take the {pose}")
+            expect(page.get_by_role("main")).to_contain_text(f"{pose.capitalize()} is taken.")
         press(page, "Store")
         expect(page.get_by_role("main")).to_contain_text("Zeros, scales and limits run and are stored.")
         require_no_barrier(page, DARK_AND_NARROW)
@@ -131,7 +146,9 @@ def test_a_board_is_watched_driven_and_changed(context: BrowserContext, site: Si
         for pot in POTS:  # as the default arm's are mounted
             assert stored[f"{pot}.zero"] == pytest.approx(DEFAULTS[f"{pot}.zero"], abs=40)
             assert stored[f"{pot}.scale"] == pytest.approx(DEFAULTS[f"{pot}.scale"], rel=0.01)
-        assert stored.each("joint", "limit_max") == pytest.approx([4096 * (1.2 - MARGIN_RAD)] * 4, abs=60)
+        assert stored.each("joint", "limit_max") == pytest.approx(
+            [4096 * (math.radians(ENDS_DEG[0]) - MARGIN_RAD)] * 4, abs=60
+        )
 
 
 def full_of_zeros(size: int) -> str:

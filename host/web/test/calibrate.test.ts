@@ -1,32 +1,37 @@
-// A sweep and two poses give the raw values that the host works out, or its sentence.
+// Sweeps, poses and pulses are judged as the host judges them: the same values, or the same sentence.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { test } from "node:test";
-import { countsOf, solve, type Ends, type Pose } from "../src/calibrate/solve";
+import { apartIn, changesOf, countsOf, requireNoSlip, solve, type Pose } from "../src/calibrate/solve";
+import { judgeSweep, type Sweep } from "../src/calibrate/sweep";
 import { TABLE } from "../src/link/schema";
 
-type Case = { sweep: Ends[]; first: Pose; second: Pose; raw: Record<string, number> | null; error: string };
-const cases = JSON.parse(readFileSync(process.env["CALIBRATIONS"]!, "utf8")) as Case[];
+type Solved = { sweeps: Sweep[]; first: Pose; second: Pose; raw: Record<string, number> | null; error: string };
+type Swept = { counts: number[][]; pot: number; sweep: ReturnType<typeof judgeSweep> };
+const { solved, swept } = JSON.parse(readFileSync(process.env["CALIBRATIONS"]!, "utf8")) as { solved: Solved[]; swept: Swept[] };
+const ALL = [0, 1, 2, 3];
+/** The host's sentence begins with its port, or small. */
+const as = (error: string) => ({ message }: Error): boolean => message.slice(1) === error.slice(1);
 
-test("zeros, scales and limits are the host's", () => {
-  for (const { sweep, first, second, raw, error } of cases) {
-    if (raw) assert.deepEqual(Object.fromEntries(solve(sweep, first, second, [0, 1, 2, 3])), raw);
-    else assert.throws(() => solve(sweep, first, second, [0, 1, 2, 3]), ({ message }: Error) => message.slice(1) === error.slice(1));
+test("what a sweep shows, and each mistake", () => {
+  for (const { counts, pot, sweep } of swept) assert.deepEqual(judgeSweep(counts.map((column) => Float64Array.from(column)), pot), sweep);
+});
+
+test("zeros, scales and limits", () => {
+  for (const { sweeps, first, second, raw, error } of solved) {
+    if (raw) assert.deepEqual(Object.fromEntries(changesOf(solve(sweeps, first, second, ALL))), raw);
+    else assert.throws(() => solve(sweeps, first, second, ALL), as(error));
   }
 });
 
-test("a sweep that hardly moved and a reading at a rail are refused", () => {
-  const { sweep, first, second } = cases[0]!;
-  const refused = (pot: number, ends: Ends): string => {
-    try {
-      solve(sweep.map((one, place) => (place === pot ? ends : one)), first, second, [0, 1, 2, 3]);
-    } catch (error) {
-      return (error as Error).message;
-    }
-    return "";
-  };
-  assert.match(refused(5, { low: 500, high: 530 }), /^Follower potentiometer 1 was hardly turned/);
-  assert.match(refused(0, { low: 2, high: 900 }), /^Leader potentiometer 0 reads 2..900 of 1023, at a rail/);
+test("a shaft that slipped and arms that differ are told by the poses after", () => {
+  const { sweeps, first, second } = solved[0]!;
+  const off = (pot: number, count: number): Pose => ({ ...second, counts: second.counts.map((one, at) => (at === pot ? one + count : one)) });
+  assert.throws(() => requireNoSlip(second, off(6, 9)), /^Error: Follower potentiometer 2 reads 9 counts elsewhere in the same pose/);
+  requireNoSlip(second, off(6, 8));
+  const found = solve(sweeps, first, second, ALL);
+  assert.throws(() => apartIn(found, off(1, 60), ALL), /^Error: Held in the same pose, leader and follower differ by 0.\d\d rad at joint 1/);
+  assert.ok(apartIn(found, off(1, 10), ALL)[1]! > 0.03);
 });
 
 test("counts are those of the converter, whatever set the angle came from", () => {

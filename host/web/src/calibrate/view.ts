@@ -1,4 +1,4 @@
-// From potentiometers mounted anyhow to angles, by hand: a sweep, two poses of known angles, and what they give is stored.
+// From potentiometers mounted anyhow to angles, by hand: a sweep of each joint and four poses; mistakes of the wiring by name.
 
 import { LinkError } from "../link/declared";
 import { potName, upperFirst } from "../link/refusal";
@@ -7,56 +7,62 @@ import { button, el, setText } from "../parts/dom";
 import type { View } from "../parts/view";
 import { traceOf } from "../samples/samples";
 import type { Session } from "../session";
-import { countsOf, jointsInUse, JOINTS, solve, type Ends, type Pose } from "./solve";
+import { apartIn, changesOf, countsOf, JOINTS, jointsInUse, potsOf, requireNoSlip, solve, type Calibration, type Pose } from "./solve";
+import { judgeSweep, type Sweep } from "./sweep";
+import { POSES, POSES_ASKED, sweepAsked } from "./words";
 
-const POTS = 2 * JOINTS;
+const POTS = Array.from({ length: 2 * JOINTS }, (_, pot) => pot);
 const HELD_TICKS = 500; // that a pose is looked at
 const MEAN_TICKS = 100;
-const STILL_COUNTS = 3; // between its beginning and its end
+const STILL_COUNTS = 3; // of the means of a held pose
 const SECOND_RAD = 1;
+const [FIRST, SECOND, AGAIN, THIRD] = [0, 1, 2, 3] as const;
 
 export class CalibrateView implements View {
   readonly name = "Calibrate";
   readonly element: HTMLElement;
-  private sweep: { low: number; high: number }[] = [];
-  private looked: number | null = null; // the sample up to which the sweep was looked at; null while there is none
-  private readonly poses: (Pose | null)[] = [null, null];
-  private readonly sweeping = button("Begin the sweep", () => void this.session.attempt(() => this.sweepOrEnd()));
-  private readonly keep = button("Store", () => void this.session.attempt(() => this.store()), { class: "primary", title: "Work out zeros, scales and limits, run and store them" });
+  private readonly sweeps: (Sweep | null)[] = POTS.map(() => null);
+  private turning: { readonly pot: number; readonly from: number } | null = null; // since that sample
+  private poses: (Pose | null)[] = POSES.map(() => null);
+  private readonly next = button("Begin the sweeps", () => this.act(() => this.goOn()), { class: "primary" });
+  private readonly asked = el("p", { attrs: { role: "status" } }, "The motors stay off. Turn one joint of one arm after the other.");
   private readonly said = el("p", { attrs: { role: "status" } });
-  private readonly cells: HTMLTableCellElement[][] = [];
+  private readonly rows = POTS.map((pot) => ({
+    cells: ["", "", ""].map((text) => el("td", {}, text)),
+    sweep: button("Begin", () => this.act(() => this.begin(pot)), { title: `Sweep the joint of the ${potName(pot)}` }),
+  }));
 
   constructor(private readonly session: Session) {
-    const head = ["potentiometer", "reads", "least", "most"].map((text) => el("th", { attrs: { scope: "col" } }, text));
-    const rows = Array.from({ length: POTS }, (_, pot) => {
-      const cells = ["", "", ""].map((text) => el("td", {}, text));
-      this.cells.push(cells);
-      return el("tr", {}, el("th", { attrs: { scope: "row" } }, upperFirst(potName(pot))), ...cells);
-    });
+    const head = ["potentiometer", "reads", "least", "most", "sweep"].map((text) => el("th", { attrs: { scope: "col" } }, text));
+    const rows = this.rows.map(({ cells, sweep }, pot) => el("tr", {},
+      el("th", { attrs: { scope: "row" } }, upperFirst(potName(pot)).replace(" potentiometer", "")), ...cells, el("td", {}, sweep)));
     this.element = el("div", { class: "editor" },
-      el("section", { class: "card connect" },
-        el("h2", {}, "1 Sweep"), el("p", {}, "The motors stay off. Turn every joint of both arms from one end to the other."),
-        el("div", { class: "row" }, this.sweeping),
-        ...this.pose(0, "2 First pose", 0), ...this.pose(1, "3 Second pose", SECOND_RAD),
-        el("h2", {}, "4 Store"), el("div", { class: "row" }, this.keep), this.said),
-      el("section", { class: "card" }, el("h2", {}, "Counts of 1023"),
+      el("section", { class: "card" },
+        el("h2", {}, "1 Sweeps"), this.asked, el("div", { class: "row" }, this.next),
         el("table", {}, el("thead", {}, el("tr", {}, ...head)), el("tbody", {}, ...rows)),
-        el("p", { class: "quiet" }, "greywhale calibrate does more: it names mistakes of the wiring, compares the arms without a protractor, and finds the motors' directions.")));
+        el("p", { class: "quiet" }, "Counts of 1023. Each sweep shows whether the right potentiometer turns, and it alone.")),
+      el("section", { class: "card connect" },
+        ...POSES.flatMap((_, place) => this.pose(place)),
+        el("h2", {}, "6 Store"),
+        el("div", { class: "row" }, button("Store", () => this.act(() => this.store()), { class: "primary", title: "Run and store zeros, scales and limits" })),
+        this.said,
+        el("p", { class: "quiet" }, "greywhale calibrate does more: it compares the arms without a protractor, and finds the motors' directions.")));
   }
 
-  private pose(place: number, title: string, rad: number): HTMLElement[] {
-    const inputs = Array.from({ length: JOINTS }, (_, joint) =>
-      el("input", { type: "number", value: String(rad), attrs: { step: "any", "aria-label": `${title.slice(2)}, joint ${joint}, rad` } }));
-    const take = button(`Take the ${title.slice(2).toLowerCase()}`, () => void this.session.attempt(async () => {
-      this.poses[place] = { angles: inputs.map(({ value }) => Number(value)), counts: this.still(await this.running()) };
-      this.tell(`${title.slice(2)} is taken.`);
+  private pose(place: number): HTMLElement[] {
+    const title = POSES[place]!;
+    const inputs = place > SECOND ? [] : Array.from({ length: JOINTS }, (_, joint) =>
+      el("input", { type: "number", value: String(place * SECOND_RAD), attrs: { step: "any", "aria-label": `${title}, joint ${joint}, rad` } }));
+    const take = button(`Take the ${title.toLowerCase()}`, () => this.act(async () => {
+      const raw = await this.running();
+      const angles = place === AGAIN ? this.poses[FIRST]?.angles ?? [] : inputs.map(({ value }) => Number(value));
+      this.take(place, { angles, counts: this.still(raw) }, jointsInUse(raw));
     }));
-    return [el("h2", {}, title), el("p", {}, "Hold both arms still with these angles of joint 0 to 3, in rad."),
-      el("div", { class: "row" }, ...inputs, take)];
+    return [el("h2", {}, `${place + 2} ${title}`), el("p", {}, POSES_ASKED[place]!), el("div", { class: "row" }, ...inputs, take)];
   }
 
-  private tell(sentence: string): void {
-    setText(this.said, sentence);
+  private act(act: () => Promise<void>): void {
+    void this.session.attempt(act);
   }
 
   /** The set that runs, by which the counts are known; the motors must be off. */
@@ -65,69 +71,113 @@ export class CalibrateView implements View {
     return this.session.readParameters();
   }
 
-  private async sweepOrEnd(): Promise<void> {
-    if (this.looked === null) {
-      await this.running();
-      this.sweep = Array.from({ length: POTS }, () => ({ low: Infinity, high: -Infinity }));
-      this.looked = this.session.samples.end;
-    } else {
-      this.look();
-      this.looked = null;
-      this.tell("The sweep is taken.");
-    }
-    setText(this.sweeping, this.looked === null ? "Begin the sweep" : "End the sweep");
+  /** Ends the sweep that is under way, and begins the next. */
+  private async goOn(): Promise<void> {
+    const raw = await this.running();
+    const mistake = this.turning ? this.judge(this.turning, raw) : "";
+    const pot = potsOf(jointsInUse(raw)).find((one) => !this.sweeps[one]);
+    if (!mistake && pot !== undefined) return this.begin(pot);
+    this.turning = null;
+    this.ask(mistake ? `${mistake} Mend it, then comes this sweep again.` : "All potentiometers turn with their joints.", mistake !== "");
   }
 
-  private counts(number: number, raw: readonly number[]): number[] {
-    return Array.from({ length: POTS }, (_, pot) =>
-      countsOf(this.session.samples.count(number, traceOf(pot < JOINTS ? "leader" : "follower", pot % JOINTS)), pot, raw));
+  private async begin(pot: number): Promise<void> {
+    if (!potsOf(jointsInUse(await this.running())).includes(pot)) throw new LinkError(`Joint ${pot % JOINTS} is not in use: a scale of it is 0.`);
+    this.turning = { pot, from: this.session.samples.end };
+    this.sweeps[pot] = null;
+    this.ask(sweepAsked(pot));
   }
 
-  private look(): void {
-    const { samples, parameters } = this.session;
-    if (this.looked === null || !parameters) return;
-    for (let number = Math.max(this.looked, samples.first); number < samples.end; number++) {
-      this.counts(number, parameters).forEach((count, pot) => {
-        const ends = this.sweep[pot]!;
-        ends.low = Math.min(ends.low, count);
-        ends.high = Math.max(ends.high, count);
-      });
+  private ask(what: string, mistake = false): void {
+    setText(this.asked, what);
+    this.asked.classList.toggle("problem", mistake);
+    this.show();
+  }
+
+  /** Keeps a sweep, or says what is wrong with it. */
+  private judge({ pot, from }: { readonly pot: number; readonly from: number }, raw: readonly number[]): string {
+    this.requireOff(from);
+    const { mistake, ...sweep } = judgeSweep(this.counts(from, raw), pot);
+    if (!mistake) this.sweeps[pot] = sweep;
+    return mistake;
+  }
+
+  /** With motors on, samples have the reference in the place of the leader. */
+  private requireOff(from: number): void {
+    const { samples } = this.session;
+    for (let number = Math.max(from, samples.first); number < samples.end; number++) {
+      const state = samples.state[number % samples.capacity];
+      if (state === State.is.soft_start || state === State.is.following) throw new LinkError("The motors were on meanwhile; do it again with the motors off.");
     }
-    this.looked = samples.end;
+  }
+
+  /** Counts of the samples from a number on, a column a potentiometer. */
+  private counts(from: number, raw: readonly number[]): Float64Array[] {
+    const { samples } = this.session;
+    const begin = Math.max(from, samples.first);
+    if (begin >= samples.end) throw new LinkError("No sample has come yet; is the board silent?");
+    return POTS.map((pot) => Float64Array.from({ length: samples.end - begin }, (_, row) =>
+      countsOf(samples.count(begin + row, traceOf(pot < JOINTS ? "leader" : "follower", pot % JOINTS)), pot, raw)));
   }
 
   /** The counts of arms that were held still. */
   private still(raw: readonly number[]): number[] {
     const { samples } = this.session;
     if (samples.end - samples.first < HELD_TICKS) throw new LinkError("There are too few samples yet; hold the pose for half a second.");
-    const mean = (from: number, count: number): number[] => {
-      const rows = Array.from({ length: count }, (_, i) => this.counts(from + i, raw));
-      return Array.from({ length: POTS }, (_, pot) => rows.reduce((sum, row) => sum + row[pot]!, 0) / count);
-    };
-    const begin = samples.end - HELD_TICKS;
-    const [before, after] = [mean(begin, MEAN_TICKS), mean(samples.end - MEAN_TICKS, MEAN_TICKS)];
-    const moved = jointsInUse(raw).flatMap((joint) => [joint, JOINTS + joint]).find((pot) => Math.abs(after[pot]! - before[pot]!) > STILL_COUNTS);
-    if (moved !== undefined) throw new LinkError(`${upperFirst(potName(moved))} moved; hold both arms still for half a second, and take the pose again.`);
-    return mean(begin, HELD_TICKS);
+    this.requireOff(samples.end - HELD_TICKS);
+    const mean = (values: Float64Array): number => values.reduce((sum, one) => sum + one, 0) / values.length;
+    const columns = this.counts(samples.end - HELD_TICKS, raw);
+    const wandered = columns.map((column) => {
+      const means = Array.from({ length: HELD_TICKS / MEAN_TICKS }, (_, part) => mean(column.subarray(part * MEAN_TICKS, (part + 1) * MEAN_TICKS)));
+      return Math.max(...means) - Math.min(...means);
+    });
+    const most = Math.max(...wandered);
+    if (most > STILL_COUNTS) {
+      throw new LinkError(`${upperFirst(potName(wandered.indexOf(most)))} moved by ${most.toFixed(0)} counts; hold both arms still.`);
+    }
+    return columns.map(mean);
+  }
+
+  /** Keeps a pose unless it contradicts what was before; those after it are to be taken again. */
+  private take(place: number, pose: Pose, joints: readonly number[]): void {
+    const poses = this.poses.map((kept, one) => (one < place ? kept : one === place ? pose : null));
+    const [first, , again] = poses;
+    if (first && again) requireNoSlip(first, again);
+    const apart = this.solved(poses, joints)?.apart;
+    this.poses = poses;
+    setText(this.said, `${POSES[place]} is taken.${apart ? ` The arms are ${(1000 * Math.max(...apart)).toFixed(0)} mrad apart in the third pose.` : ""}`);
+  }
+
+  /** What sweeps and poses give, as soon as there are enough of them. */
+  private solved(poses: readonly (Pose | null)[], joints: readonly number[]): { found: Calibration; apart: number[] | null } | null {
+    const { [FIRST]: first, [SECOND]: second, [THIRD]: third } = poses;
+    if (!first || !second || potsOf(joints).some((pot) => !this.sweeps[pot])) return null;
+    const found = solve(this.sweeps, first, second, joints);
+    return { found, apart: third ? apartIn(found, third, joints) : null };
   }
 
   private async store(): Promise<void> {
-    const [first, second] = this.poses;
-    if (!this.sweep.length || this.looked !== null || !first || !second) throw new LinkError("Take the sweep and both poses first.");
     const before = await this.running();
-    const found = solve(this.sweep as readonly Ends[], first, second, jointsInUse(before));
-    await this.session.apply(TABLE.parameters.map(({ name, index }) => found.get(name) ?? before[index]!));
+    const solved = this.solved(this.poses, jointsInUse(before));
+    if (!solved || this.poses.includes(null)) throw new LinkError("Take all sweeps and the four poses first.");
+    const changes = changesOf(solved.found);
+    await this.session.apply(TABLE.parameters.map(({ name, index }) => changes.get(name) ?? before[index]!));
     await this.session.store();
-    this.tell("Zeros, scales and limits run and are stored.");
+    setText(this.said, "Zeros, scales and limits run and are stored.");
+  }
+
+  private show(): void {
+    setText(this.next, this.turning ? "Done" : "Go on");
+    this.rows.forEach(({ cells, sweep }, pot) => {
+      const { low, high } = this.sweeps[pot] ?? { low: NaN, high: NaN };
+      [low, high].forEach((value, end) => setText(cells[end + 1]!, Number.isNaN(value) ? "–" : value.toFixed(1)));
+      setText(sweep, this.turning?.pot === pot || this.sweeps[pot] ? "Again" : "Begin");
+    });
   }
 
   frame(): void {
     const { samples, parameters } = this.session;
     if (!parameters || !samples.end) return;
-    this.look();
-    this.counts(samples.end - 1, parameters).forEach((count, pot) => {
-      const { low, high } = this.sweep[pot] ?? { low: Infinity, high: -Infinity };
-      [count, low, high].forEach((value, place) => setText(this.cells[pot]![place]!, Number.isFinite(value) ? value.toFixed(1) : "–"));
-    });
+    this.counts(samples.end - 1, parameters).forEach(([count], pot) => setText(this.rows[pot]!.cells[0]!, count!.toFixed(1)));
   }
 }

@@ -16,6 +16,13 @@ export function short(value: number): string {
   return `${String(Number(digits))}e${power.slice(0, 1)}${power.slice(1).padStart(2, "0")}`;
 }
 
+/** A number with so many digits after its point; of two that are as near, the even one. */
+export function fixed(value: number, digits: number): string {
+  const scaled = value * 10 ** digits;
+  const halfway = Number.isInteger(value * 2 ** (digits + 1)) && Math.abs(scaled % 1) === 0.5;
+  return (halfway ? (2 * Math.round(scaled / 2)) / 10 ** digits : value).toFixed(digits);
+}
+
 export function cut(text: string, most = LONGEST): string {
   if (text.length <= most) return text;
   const end = Math.floor(most / 3);

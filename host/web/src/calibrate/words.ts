@@ -1,0 +1,29 @@
+// What a person is asked to do: joints by name, and which way of each is positive: greywhale/board/calibrate/words.py.
+
+import { potName } from "../link/refusal";
+
+const JOINT_NAMES = ["base yaw", "shoulder pitch", "wrist pitch", "wrist roll"];
+const POSITIVE_WAYS = [
+  "counter-clockwise, seen from above",
+  "up: the hand rises",
+  "up: the hand rises, while the upper arm is level",
+  "clockwise, seen from the elbow along the hand",
+];
+
+export const POSES = ["First pose", "Second pose", "First pose again", "Third pose"] as const;
+export const POSES_ASKED = [
+  "Hold both arms still with these angles of joint 0 to 3, in rad.",
+  "Hold both arms still with these angles, each at least 0.3 rad from the first.",
+  "Hold both arms once more in the first pose: a potentiometer that slips on its shaft shows.",
+  "Hold both arms in one and the same other pose: it shows how far they are apart.",
+] as const;
+
+/** Leader joint 1, shoulder pitch. */
+export function jointName(pot: number): string {
+  return `${potName(pot).replace(" potentiometer ", " joint ")}, ${JOINT_NAMES[pot % 4]!}`;
+}
+
+export function sweepAsked(pot: number): string {
+  return `Now ${jointName(pot)}: turn it, and no other, slowly to its positive end (${POSITIVE_WAYS[pot % 4]!}), then to its negative end, `
+    + "and let it rest.";
+}
