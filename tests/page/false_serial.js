@@ -1,7 +1,7 @@
-// A false navigator.serial: one port, whose other end is the test's. The board lives while the port is open, at most as
-// fast as the clock but for a bootloader, and the page's waits are waits in the board's time.
+// A false navigator.serial: one port, whose other end is the test's. The board lives while the port is open, at most
+// five times as fast as the clock but for a bootloader, and the page's waits are waits in the board's time.
 (() => {
-  const TURN_MS = 20, FAST = 115200, LONG_MS = 3000, BEFORE = 1e9;
+  const TURN_MS = 4, FAST = 115200, LONG_MS = 3000, BEFORE = 1e9;
   const wait = setTimeout, noWait = clearTimeout;
   const waits = new Map();
   let lived = 0, next = BEFORE;

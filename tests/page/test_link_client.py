@@ -16,8 +16,6 @@ import numpy as np
 import pytest
 
 from greywhale.base.errors import UserError
-from greywhale.board.calibrate.solve import Pose, solve
-from greywhale.board.calibrate.sweep import Sweep, judge_sweep
 from greywhale.files import controller, parameter_file
 from greywhale.files.paper_tables import paper_table
 from greywhale.fuzzy.exact import Law
@@ -25,7 +23,7 @@ from greywhale.fuzzy.settings import ANGLE_UNIT, SET_UNIT, JointSettings
 from greywhale.protocol.joints import ALL
 from greywhale.protocol.schema import LAYOUT, PARAMETER_BY_NAME, PARAMETERS, Refusal
 from greywhale.protocol.table import ParameterTable
-from tests.board.calibrate.test_sweep import MISTAKES, swept
+from tests.page.calibrations import calibrations
 from tests.page.tuning import tuning
 from tools import ROOT
 from tools.site.build import write_bench
@@ -166,48 +164,6 @@ def answers_to_parameter_files() -> list[dict[str, Any]]:
     return answers(texts, lambda path: parameter_file.load(path).raw)
 
 
-def swept_joints() -> list[dict[str, Any]]:
-    """Recordings of sweeps, right and with each mistake, and what the host says of them."""
-    cases = []
-    for pot, counts, _ in [(1, swept(1), ""), (6, swept(6, -250.0), ""), *MISTAKES]:
-        sweep = asdict(judge_sweep(counts, pot))
-        told = {name: sweep[name] for name in ("direction", "low", "high")} | {"mistake": " ".join(sweep["mistakes"])}
-        cases.append({"counts": counts.T.tolist(), "pot": pot, "sweep": told})
-    return cases
-
-
-def calibrations() -> list[dict[str, Any]]:
-    """Sweeps and poses of arms whose potentiometers are mounted anyhow, and some that contradict each other."""
-    chance = np.random.default_rng(1)
-    cases: list[dict[str, Any]] = []
-    for slip in ["", "", "", "poses too near", "shaft slips", "other way", "other ends"]:
-        scale = np.radians(chance.uniform(260, 340, 8)) / 1023 * chance.choice([-1, 1], 8)
-        zero = chance.uniform(400, 600, 8)
-        ends = chance.uniform(1.0, 1.4, (8, 2)) * [-1, 1]
-        poses = [np.zeros(4), chance.choice([-1, 1], 4) * (0.2 if slip == "poses too near" else 0.8)]
-        counts = [zero + np.tile(pose, 2) / scale for pose in poses]
-        if slip == "shaft slips":
-            counts[1][6] = counts[0][6] + 20
-        if slip == "other ends":
-            ends[4] = [1.1, 1.4]
-            ends[0] = [-1.4, 1.0]
-        turned = np.sort(zero[:, None] + ends / scale[:, None], axis=1)
-        ways = np.sign(scale) * np.where(np.arange(8) == 3, -1 if slip == "other way" else 1, 1)
-        sweeps = [Sweep(pot, int(ways[pot]), low, high, ()) for pot, (low, high) in enumerate(turned.tolist())]
-        first, second = (Pose(angles, read) for angles, read in zip(poses, counts, strict=True))
-        told: dict[str, Any] = {"sweeps": [asdict(sweep) for sweep in sweeps]}
-        told |= {
-            name: {"angles": one.angles.tolist(), "counts": one.counts.tolist()}
-            for name, one in (("first", first), ("second", second))
-        }
-        try:
-            cases.append({**told, "raw": solve(sweeps, first, second, None).changes(), "error": ""})
-        except UserError as error:
-            cases.append({**told, "raw": None, "error": error.message})
-    assert [one["raw"] is None for one in cases] == 3 * [False] + 4 * [True]
-    return cases
-
-
 def test_link_client_samples_law_files_bench_and_tuner_give_what_python_gives(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -219,7 +175,7 @@ def test_link_client_samples_law_files_bench_and_tuner_give_what_python_gives(
     parameters = tmp_path / "parameters.json"
     parameters.write_text(json.dumps(answers_to_parameter_files()))
     calibrated = tmp_path / "calibrations.json"
-    calibrated.write_text(json.dumps({"solved": calibrations(), "swept": swept_joints()}))
+    calibrated.write_text(json.dumps(calibrations(monkeypatch)))
     tuned = tmp_path / "tuning.json"
     tuned.write_text(json.dumps(tuning()))
     given = {"CALIBRATIONS": calibrated, "GOLDEN": golden, "LAW": law, "CONTROLLER_FILES": files, "TUNING": tuned}

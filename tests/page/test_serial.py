@@ -9,6 +9,7 @@ import pytest
 from playwright.sync_api import BrowserContext, Page, expect
 
 from greywhale.base.errors import UserError
+from greywhale.board.calibrate.motors import LEASE_MS, SHARES
 from greywhale.board.calibrate.solve import MARGIN_RAD
 from greywhale.board.device import Device
 from greywhale.board.flash.images import read_image
@@ -118,8 +119,16 @@ def test_a_board_is_watched_driven_and_changed(context: BrowserContext, site: Si
             hold(page, bench, angle)
             press(page, f"Take the {pose}")
             expect(page.get_by_role("main")).to_contain_text(f"{pose.capitalize()} is taken.")
+        bench.command("motor 1 reversed")
+        live(page, bench, bench.command("hang")["arrives_s"] - bench.bench.time_s)
+        bench.command("pins")
+        press(page, "Try motor 1")
+        expect(page.get_by_text("V moved it, the other way round")).to_be_visible()
+        seen = bench.command("pins")
+        assert 0.0 < max(seen["duties"]) <= SHARES[-1] + 1 / 400
+        assert seen["longest_on_s"] <= LEASE_MS / 1000 + 0.002
         press(page, "Store")
-        expect(page.get_by_role("main")).to_contain_text("Zeros, scales and limits run and are stored.")
+        expect(page.get_by_role("main")).to_contain_text("What was found runs and is stored.")
         require_no_barrier(page, DARK_AND_NARROW)
 
         press(page, "Parameters")
@@ -146,6 +155,7 @@ def test_a_board_is_watched_driven_and_changed(context: BrowserContext, site: Si
         for pot in POTS:  # as the default arm's are mounted
             assert stored[f"{pot}.zero"] == pytest.approx(DEFAULTS[f"{pot}.zero"], abs=40)
             assert stored[f"{pot}.scale"] == pytest.approx(DEFAULTS[f"{pot}.scale"], rel=0.01)
+        assert stored.each("joint", "motor_sign") == (1, -1, 1, 1)
         assert stored.each("joint", "limit_max") == pytest.approx(
             [4096 * (math.radians(ENDS_DEG[0]) - MARGIN_RAD)] * 4, abs=60
         )

@@ -148,6 +148,6 @@ async function open(session: Session, board: PageBoard, state: PageState | null)
     await change(state.sizes);
     await session.attempt(() => session.apply(state.raw));
   }
-  if (!session.stopAsked) await session.attempt(() => session.enable());
+  if (!session.stopsAsked) await session.attempt(() => session.enable());
   if (state) await change(state.acts); // with the motors on, so that what comes of them is seen
 }

@@ -5,8 +5,8 @@ import { LinkClient } from "./link/client";
 import { LinkError, RefusedError } from "./link/declared";
 import { FrameDecoder } from "./link/frames";
 import {
-  ClearFaultRequest, ClutchRequest, EnableRequest, HelloReply, HelloRequest, NackCode, ParamApplyRequest, ParamGetRequest, ParamSaveRequest,
-  ParamSetRequest, Sample, SaveState, SCHEMA_HASH, State, StatusReply, StatusRequest, StopRequest, TABLE, TelemetryRequest,
+  ClearFaultRequest, ClutchRequest, EnableRequest, HelloReply, HelloRequest, LeadPointRequest, LeadReply, LeadRequest, NackCode,
+  ParamApplyRequest, ParamGetRequest, ParamSaveRequest, ParamSetRequest, Sample, SaveState, SCHEMA_HASH, State, StatusReply, StatusRequest, StopRequest, TABLE, TelemetryRequest,
 } from "./link/schema";
 import { Signal } from "./parts/signal";
 import { Samples } from "./samples/samples";
@@ -40,8 +40,8 @@ export class Session {
   storedCrc: number | null = null;
   private readonly known = new Map<number, readonly number[]>(); // sets by their CRC
   notice: Notice | null = null;
-  /** Whether a person has asked for a stop since the page was opened. */
-  stopAsked = false;
+  /** How often a stop was asked for since the page was opened. */
+  stopsAsked = 0;
   /** Whether the samples from before are here; until then new ones wait. */
   private waiting: Uint8Array[] | null = [];
   private readonly client: LinkClient;
@@ -153,9 +153,17 @@ export class Session {
   }
 
   async stop(): Promise<void> {
-    this.stopAsked = true;
+    this.stopsAsked++;
     await this.client.ask(StopRequest, {});
     await this.askStatus();
+  }
+
+  /** Starts the motors with the page in the leader's place, for so long at most, and sends one point: where it begins, and the step. */
+  async lead(lease_ms: number, step: readonly number[]): Promise<LeadReply> {
+    this.mustDrive();
+    const begun = await this.client.ask(LeadRequest, { lease_ms });
+    await this.client.ask(LeadPointRequest, { number: begun.next, step });
+    return begun;
   }
 
   /** Moves the leader without the follower, or takes it up again from there. */

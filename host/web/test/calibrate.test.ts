@@ -2,13 +2,19 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { test } from "node:test";
+import { examineMotor, remarks, type Motor } from "../src/calibrate/motors";
+import { pulseSet } from "../src/calibrate/pulses";
 import { apartIn, changesOf, countsOf, requireNoSlip, solve, type Pose } from "../src/calibrate/solve";
 import { judgeSweep, type Sweep } from "../src/calibrate/sweep";
 import { TABLE } from "../src/link/schema";
 
 type Solved = { sweeps: Sweep[]; first: Pose; second: Pose; raw: Record<string, number> | null; error: string };
 type Swept = { counts: number[][]; pot: number; sweep: ReturnType<typeof judgeSweep> };
-const { solved, swept } = JSON.parse(readFileSync(process.env["CALIBRATIONS"]!, "utf8")) as { solved: Solved[]; swept: Swept[] };
+type Tried = { joint: number; pulses: { way: number; moved: number[] }[]; motor: Motor | null; error: string };
+type Given = { solved: Solved[]; swept: Swept[]; tried: Tried[]; remarks: { motors: Motor[]; remarks: string[] }[]; pulse_set: number[] };
+const given = JSON.parse(readFileSync(process.env["CALIBRATIONS"]!, "utf8")) as Given;
+const { solved, swept } = given;
+const DEFAULTS = TABLE.parameters.map(({ initial }) => initial);
 const ALL = [0, 1, 2, 3];
 /** The host's sentence begins with its port, or small. */
 const as = (error: string) => ({ message }: Error): boolean => message.slice(1) === error.slice(1);
@@ -34,8 +40,23 @@ test("a shaft that slipped and arms that differ are told by the poses after", ()
   assert.ok(apartIn(found, off(1, 10), ALL)[1]! > 0.03);
 });
 
+test("a motor's direction, and what is wrong with it, from the same pulses", async () => {
+  for (const { joint, pulses, motor, error } of given.tried) {
+    let number = 0;
+    const pulse = async (_: number, way: number): Promise<number[]> => {
+      assert.equal(way, pulses[number]!.way);
+      return pulses[number++]!.moved;
+    };
+    if (motor) assert.deepEqual(await examineMotor(pulse, 15, joint), motor);
+    else await assert.rejects(examineMotor(pulse, 15, joint), as(error));
+    assert.equal(number, pulses.length);
+  }
+  for (const { motors, remarks: told } of given.remarks) assert.deepEqual(remarks(motors, 15), told);
+  assert.deepEqual(pulseSet(DEFAULTS, 2, 2.5), given.pulse_set);
+});
+
 test("counts are those of the converter, whatever set the angle came from", () => {
-  const raw = TABLE.parameters.map(({ initial }) => initial);
+  const raw = [...DEFAULTS];
   assert.equal(countsOf(0, 0, raw), 8184 / 16);
   raw[TABLE.named("leader0.scale").index] = -5367;
   assert.equal(countsOf(-4096, 0, raw).toFixed(3), (8184 / 16 + (4096 * 8192) / 5367 / 16).toFixed(3));

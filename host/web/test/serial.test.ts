@@ -2,8 +2,11 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import type { LinkState } from "../src/board";
+import { encodeFrame } from "../src/link/frames";
+import { EnableRequest, LeadRequest, Sample, State } from "../src/link/schema";
 import { SerialBoard } from "../src/sources/serial/board";
 import { checkImage, readImage } from "../src/sources/serial/flash/image";
+import { Lease } from "../src/sources/serial/lease";
 import { TARGETS } from "../src/sources/serial/flash/targets";
 
 function record(address: number, kind: number, data: readonly number[]): string {
@@ -38,6 +41,23 @@ test("a file that is no image for this board is refused in one sentence", () => 
   assert.match(refused(record(30_720, 0, [1]) + END), /reaches up to byte 30721, but an Arduino Nano .* has room for 30720; choose another file/);
   assert.match(refused(record(0, 4, [0, 0x10]) + record(0, 0, [1]) + END), /data at address 0x100000; no board has as much memory/);
   assert.match(refused(record(0, 0, other) + END), /this image is for a chip with signature 1e930b, but the board on this port is an Arduino Nano/);
+});
+
+test("the lease with which the page leads ends by itself, whatever was asked before", () => {
+  const renewed: Uint8Array[] = [];
+  const lease = new Lease((frame) => renewed.push(frame), () => true);
+  const follow = (from: number): void => {
+    for (let tick = from; tick < from + 200; tick++) {
+      const still = { fault: 0, leader: [0, 0, 0, 0], follower: [0, 0, 0, 0], voltage: [0, 0, 0, 0] };
+      lease.onHeard(encodeFrame(Sample.type, 0, Sample.pack({ tick, state: State.is.following, ...still })), () => assert.fail());
+    }
+  };
+  lease.onSent(encodeFrame(EnableRequest.type, 1, EnableRequest.pack({ lease_ms: 300 })));
+  follow(1000);
+  assert.equal(renewed.length, 4);
+  lease.onSent(encodeFrame(LeadRequest.type, 2, LeadRequest.pack({ lease_ms: 160 })));
+  follow(2000);
+  assert.equal(renewed.length, 4);
 });
 
 test("a browser without serial ports is told so", () => {

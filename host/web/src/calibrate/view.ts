@@ -1,5 +1,7 @@
-// From potentiometers mounted anyhow to angles, by hand: a sweep of each joint and four poses; mistakes of the wiring by name.
+// From potentiometers mounted anyhow to angles, by hand: a sweep of each joint, four poses, and pulses of the
+// motors; mistakes of the wiring by name.
 
+import { fixed } from "../files/words";
 import { LinkError } from "../link/declared";
 import { potName, upperFirst } from "../link/refusal";
 import { State, TABLE } from "../link/schema";
@@ -8,8 +10,10 @@ import type { View } from "../parts/view";
 import { traceOf } from "../samples/samples";
 import type { Session } from "../session";
 import { apartIn, changesOf, countsOf, JOINTS, jointsInUse, potsOf, requireNoSlip, solve, type Calibration, type Pose } from "./solve";
+import { remarks, type Motor } from "./motors";
+import { Trial } from "./pulses";
 import { judgeSweep, type Sweep } from "./sweep";
-import { POSES, POSES_ASKED, sweepAsked } from "./words";
+import { MOTORS_ASKED, POSES, POSES_ASKED, sweepAsked } from "./words";
 
 const POTS = Array.from({ length: 2 * JOINTS }, (_, pot) => pot);
 const HELD_TICKS = 500; // that a pose is looked at
@@ -24,6 +28,8 @@ export class CalibrateView implements View {
   private readonly sweeps: (Sweep | null)[] = POTS.map(() => null);
   private turning: { readonly pot: number; readonly from: number } | null = null; // since that sample
   private poses: (Pose | null)[] = POSES.map(() => null);
+  private readonly motors = new Map<number, Motor>(); // that have turned since something was stored
+  private readonly turned = el("p", { attrs: { role: "status" } });
   private readonly next = button("Begin the sweeps", () => this.act(() => this.goOn()), { class: "primary" });
   private readonly asked = el("p", { attrs: { role: "status" } }, "The motors stay off. Turn one joint of one arm after the other.");
   private readonly said = el("p", { attrs: { role: "status" } });
@@ -43,10 +49,12 @@ export class CalibrateView implements View {
         el("p", { class: "quiet" }, "Counts of 1023. Each sweep shows whether the right potentiometer turns, and it alone.")),
       el("section", { class: "card connect" },
         ...POSES.flatMap((_, place) => this.pose(place)),
-        el("h2", {}, "6 Store"),
-        el("div", { class: "row" }, button("Store", () => this.act(() => this.store()), { class: "primary", title: "Run and store zeros, scales and limits" })),
+        el("h2", {}, "6 Motors"), el("p", {}, MOTORS_ASKED),
+        el("div", { class: "row" }, ...[0, 1, 2, 3].map((joint) => button(`Try motor ${joint}`, () => this.act(() => this.tryMotor(joint))))), this.turned,
+        el("h2", {}, "7 Store"),
+        el("div", { class: "row" }, button("Store", () => this.act(() => this.store()), { class: "primary", title: "Run and store what was found" })),
         this.said,
-        el("p", { class: "quiet" }, "greywhale calibrate does more: it compares the arms without a protractor, and finds the motors' directions.")));
+        el("p", { class: "quiet" }, "Motors that were not tried keep their directions. greywhale calibrate also compares the arms without a protractor.")));
   }
 
   private pose(place: number): HTMLElement[] {
@@ -78,6 +86,7 @@ export class CalibrateView implements View {
     const pot = potsOf(jointsInUse(raw)).find((one) => !this.sweeps[one]);
     if (!mistake && pot !== undefined) return this.begin(pot);
     this.turning = null;
+    this.next.hidden = !mistake;
     this.ask(mistake ? `${mistake} Mend it, then comes this sweep again.` : "All potentiometers turn with their joints.", mistake !== "");
   }
 
@@ -85,6 +94,7 @@ export class CalibrateView implements View {
     if (!potsOf(jointsInUse(await this.running())).includes(pot)) throw new LinkError(`Joint ${pot % JOINTS} is not in use: a scale of it is 0.`);
     this.turning = { pot, from: this.session.samples.end };
     this.sweeps[pot] = null;
+    this.next.hidden = false;
     this.ask(sweepAsked(pot));
   }
 
@@ -156,14 +166,40 @@ export class CalibrateView implements View {
     return { found, apart: third ? apartIn(found, third, joints) : null };
   }
 
-  private async store(): Promise<void> {
+  /** The set that runs, and the same with potentiometers and limits as found. */
+  private async calibrated(): Promise<{ readonly before: readonly number[]; readonly after: number[] }> {
     const before = await this.running();
     const solved = this.solved(this.poses, jointsInUse(before));
     if (!solved || this.poses.includes(null)) throw new LinkError("Take all sweeps and the four poses first.");
     const changes = changesOf(solved.found);
-    await this.session.apply(TABLE.parameters.map(({ name, index }) => changes.get(name) ?? before[index]!));
+    return { before, after: TABLE.parameters.map(({ name, index }) => changes.get(name) ?? before[index]!) };
+  }
+
+  private async tryMotor(joint: number): Promise<void> {
+    const { before, after } = await this.calibrated();
+    if (!jointsInUse(before).includes(joint)) throw new LinkError(`Joint ${joint} is not in use: a scale of it is 0.`);
+    const buttons = [...this.element.querySelectorAll("button")];
+    for (const one of buttons) one.disabled = true;
+    this.motors.delete(joint);
+    setText(this.turned, `Motor ${joint} gets pulses.`);
+    try {
+      this.motors.set(joint, await new Trial(this.session, before, after, joint).run());
+    } finally {
+      for (const one of buttons) one.disabled = false;
+      const told = [...this.motors.values()].map(({ joint: one, volts, sign }) =>
+        `Motor ${one}: ${fixed(volts, 1)} V moved it${sign < 0 ? ", the other way round; Store puts that right" : ""}.`);
+      setText(this.turned, [...told, ...remarks([...this.motors.values()], before[TABLE.named("supply_mv").index]! / 1000)].join(" "));
+    }
+  }
+
+  private async store(): Promise<void> {
+    const { after } = await this.calibrated();
+    for (const { joint, sign } of this.motors.values()) after[TABLE.named(`joint${joint}.motor_sign`).index]! *= sign;
+    await this.session.apply(after);
     await this.session.store();
-    setText(this.said, "Zeros, scales and limits run and are stored.");
+    this.motors.clear();
+    setText(this.turned, "");
+    setText(this.said, "What was found runs and is stored.");
   }
 
   private show(): void {

@@ -27,3 +27,6 @@ export function sweepAsked(pot: number): string {
   return `Now ${jointName(pot)}: turn it, and no other, slowly to its positive end (${POSITIVE_WAYS[pot % 4]!}), then to its negative end, `
     + "and let it rest.";
 }
+
+export const MOTORS_ASKED = "Each motor gets short weak pulses, of a tenth to a third of the supply that the board counts on (supply_mv). "
+  + "Let the follower hang or lie so that every joint can move by 20 degrees to both sides, switch the motors' supply on, and keep a hand on its switch.";

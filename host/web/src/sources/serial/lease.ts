@@ -1,4 +1,5 @@
-// Keeps the motors' lease while the page is visible and the board says each tick that it lives, by the board's own time.
+// Keeps the lease of enabled motors while the page is visible and the board says each tick that it lives, by the board's own
+// time. A lease with which the page leads is not renewed: it ends a pulse.
 
 import { encodeFrame, FrameDecoder } from "../../link/frames";
 import { EnableRequest, HelloReply, LeadRequest, RenewRequest, Sample, State, StopRequest } from "../../link/schema";
@@ -23,14 +24,12 @@ export class Lease {
   onSent(data: Uint8Array): boolean {
     let stops = false;
     this.sent.feed(data, ({ type }) => {
-      if (type === EnableRequest.type || type === LeadRequest.type) {
+      if (type === EnableRequest.type) {
         this.wanted = true;
         this.moved = false;
       }
-      if (type === StopRequest.type) {
-        this.wanted = false;
-        stops = true;
-      }
+      if (type === StopRequest.type || type === LeadRequest.type) this.wanted = false;
+      stops ||= type === StopRequest.type;
     });
     return stops;
   }
