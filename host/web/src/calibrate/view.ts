@@ -9,9 +9,9 @@ import { button, el, setText } from "../parts/dom";
 import type { View } from "../parts/view";
 import { traceOf } from "../samples/samples";
 import type { Session } from "../session";
-import { apartIn, changesOf, countsOf, JOINTS, jointsInUse, potsOf, requireNoSlip, solve, type Calibration, type Pose } from "./solve";
 import { remarks, type Motor } from "./motors";
 import { Trial } from "./pulses";
+import { apartIn, changesOf, countsOf, JOINTS, jointsInUse, potsOf, requireNoSlip, solve, type Calibration, type Pose } from "./solve";
 import { judgeSweep, type Sweep } from "./sweep";
 import { MOTORS_ASKED, POSES, POSES_ASKED, sweepAsked } from "./words";
 
@@ -143,7 +143,7 @@ export class CalibrateView implements View {
     });
     const most = Math.max(...wandered);
     if (most > STILL_COUNTS) {
-      throw new LinkError(`${upperFirst(potName(wandered.indexOf(most)))} moved by ${most.toFixed(0)} counts; hold both arms still.`);
+      throw new LinkError(`${upperFirst(potName(wandered.indexOf(most)))} moved by ${fixed(most, 0)} counts; hold both arms still.`);
     }
     return columns.map(mean);
   }
@@ -155,7 +155,7 @@ export class CalibrateView implements View {
     if (first && again) requireNoSlip(first, again);
     const apart = this.solved(poses, joints)?.apart;
     this.poses = poses;
-    setText(this.said, `${POSES[place]} is taken.${apart ? ` The arms are ${(1000 * Math.max(...apart)).toFixed(0)} mrad apart in the third pose.` : ""}`);
+    setText(this.said, `${POSES[place]} is taken.${apart ? ` The arms are ${fixed(1000 * Math.max(...apart), 0)} mrad apart in the third pose.` : ""}`);
   }
 
   /** What sweeps and poses give, as soon as there are enough of them. */
