@@ -33,8 +33,8 @@ export class ParametersView implements View {
       el("td", {}, physicalText(parameter, parameter.minimum)), el("td", {}, physicalText(parameter, parameter.maximum))));
     this.element = el("section", { class: "card" },
       el("div", { class: "tools" }, fileField("Upload a controller.toml", ".toml", (file) => file && this.act(() => this.upload(file))),
-        fileField("Restore a parameter file", ".toml", (file) => file && this.act(() => this.restore(file))),
-        el("span", { class: "gap" }), this.save, this.discard, this.store, this.apply),
+        fileField("Restore a parameter file", ".toml", (file) => file && this.act(() => this.restore(file)))),
+      el("div", { class: "tools" }, this.apply, this.store, this.discard, this.save),
       this.said, this.changes,
       el("div", { class: "scroll" }, el("table", {}, el("thead", {}, el("tr", {}, ...head)), el("tbody", {}, ...rows))));
     session.parametersChanged.on(() => this.show());
