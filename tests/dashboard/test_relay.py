@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections import Counter
+
 import pytest
 
-from greywhale.dashboard.relay import LEASE_MS, SILENCE_S
+from greywhale.dashboard.relay import ANSWER_S, LEASE_MS, SILENCE_S
 from greywhale.protocol import schema
 from greywhale.protocol.frames import FrameDecoder, encode_frame
 from greywhale_sim.lockstep import LockStepBench
@@ -62,6 +64,39 @@ def test_each_page_gets_its_own_answers_with_its_own_numbers(shared: Shared) -> 
         assert (got.type, got.seq) == (schema.ParamGetReply.TYPE, 1 + count % 5)
         assert schema.ParamGetReply.unpack(got.payload).index == count % 7
         assert (told.type, told.seq) == (schema.StatusReply.TYPE, 1 + count % 5)
+
+
+def test_what_many_pages_ask_at_once_costs_no_sample_of_an_arm_that_follows(
+    bench: LockStepBench, shared: Shared
+) -> None:
+    driver = start(shared)
+    shared.live(1.5, here=driver)
+    driver.raw()
+    driver.answers()
+    pages = [driver, *(shared.page(0) for _ in range(3))]
+    for phase in range(20):
+        bench.bench.run_slices(phase % 4)
+        for page in pages:
+            page.ask(schema.StatusRequest())
+            page.ask(schema.ParamGetRequest(phase))
+        shared.live(0.05)
+        assert [len(page.answers()) for page in pages] == 4 * [2]
+    samples = driver.samples()
+    assert {sample.state for sample in samples} == {schema.State.FOLLOWING}
+    ticks = [sample.tick for sample in samples]
+    assert ticks == list(range(ticks[0], ticks[0] + len(ticks)))
+
+
+def test_a_request_that_is_lost_delays_neither_others_nor_the_lease() -> None:
+    with FakeBoard(Faults(lose=Counter({schema.StatusRequest.TYPE: 100}))) as board, Shared(board.port) as shared:
+        driver, other = start(shared), shared.page(0)
+        for count in range(30):
+            driver.ask(schema.StatusRequest())
+            driver.ask(schema.StatusRequest())
+            seq = other.ask(schema.ParamGetRequest(count))
+            shared.live(2 * ANSWER_S + 0.02)
+            assert [frame.seq for frame in other.answers()] == [seq]
+        assert motors_on(driver)
 
 
 def test_how_many_samples_a_page_wants_is_its_own_affair(shared: Shared) -> None:

@@ -10,6 +10,7 @@ from __future__ import annotations
 import contextlib
 import secrets
 import threading
+from collections import deque
 from collections.abc import Callable
 from typing import NamedTuple
 
@@ -35,6 +36,10 @@ QUIET_S = 0.1
 TOLD_S = 0.5
 ASK_AGAIN_S = 6.0
 GIVE_UP_S = 7.0
+# While a board with its motors on answers a request, a second one may cost a sample: its tick leaves little time. So
+# one is on its way, and the next waits for its answer, but not longer than this: then it was lost.
+ANSWER_S = 0.03
+MOST_WAITING = 255  # requests; clients ask again for those that a flood of them pushes out
 
 # What changes nothing, and what must always get through.
 _FOR_ALL = {schema.HelloRequest.TYPE, schema.StatusRequest.TYPE, schema.ParamGetRequest.TYPE, schema.StopRequest.TYPE}
@@ -90,6 +95,9 @@ class Relay:
         self._decoder = FrameDecoder()
         self._asked: dict[int, _Asked] = {}
         self._sequence = 0
+        self._waiting: deque[tuple[_Asked, bytes]] = deque(maxlen=MOST_WAITING)  # requests, with their payloads
+        self._on_its_way: int | None = None  # the number of the last that was sent, until its answer
+        self._sent_s = 0.0
         self._motors: Client | None = None  # the page for which they run
         self._confirmed = False  # that they do
         self._renewed_s = self._heard_s = 0.0
@@ -109,7 +117,7 @@ class Relay:
             self._board = _Open(line, port, may_move)
             self._decoder = FrameDecoder()
             self._stored = StoredSet()
-            self._asked.clear()
+            self._forget_requests()
             self._motors = None
             self._told_silent = False
             self._want_samples()
@@ -120,7 +128,7 @@ class Relay:
         """No board is there, and why."""
         with self._lock:
             if self._board is not None:
-                self._ask(schema.TelemetryRequest(0))  # whoever opens the port next asks for samples by himself
+                self._ask_for_samples(0)  # whoever opens the port next asks for samples by himself
             self._board = self._motors = None
             if self._verb is not None:
                 self._verb.outbox.add_answer({"kind": "gone"})
@@ -147,6 +155,9 @@ class Relay:
             if self._board is None:
                 return
             now_s = self._board.line.clock()
+            if now_s > self._sent_s + ANSWER_S:
+                self._on_its_way = None
+            self._send_next()
             self._look_for_samples(now_s - self._heard_s)
             page = self._motors
             if page is None:
@@ -156,7 +167,7 @@ class Relay:
                 self._refuse(page, "the motors are off: the page that drives fell silent.")
             elif now_s >= self._renewed_s + RENEW_S and now_s <= self._heard_s + QUIET_S:
                 self._renewed_s = now_s
-                self._ask(schema.RenewRequest(LEASE_MS))
+                self._send_soon(_Asked(None, schema.RenewRequest.TYPE, 0), schema.RenewRequest(LEASE_MS).pack())
 
     # --- clients ----------------------------------------------------------------------------------------------------
 
@@ -230,7 +241,7 @@ class Relay:
             self._tell_link(True, self._board.port, "The board is silent: is its supply on?")
         if silent_s > ASK_AGAIN_S and not self._asked_again:
             self._asked_again = True
-            self._ask(schema.TelemetryRequest(1))
+            self._ask_for_samples(1)
 
     def _request(self, client: Client, frame: Frame) -> None:
         if self._board is None:
@@ -279,8 +290,31 @@ class Relay:
             if frame.type in _STARTS:
                 self._motors, self._confirmed = client, False
                 self._renewed_s = client.seen_s
-        number = self._number(_Asked(client, frame.type, frame.seq))
-        self._write(encode_frame(frame.type, number, payload))
+        asked = _Asked(client, frame.type, frame.seq)
+        if frame.type in _STARTS:  # a stop that comes behind it must find it sent
+            self._send(asked, payload)
+        else:
+            self._send_soon(asked, payload)
+
+    def _send_soon(self, asked: _Asked, payload: bytes) -> None:
+        """Send a request when the one before is answered; one that renews a lease goes before all others."""
+        if asked.type == schema.RenewRequest.TYPE:
+            self._waiting.appendleft((asked, payload))
+        else:
+            self._waiting.append((asked, payload))
+        self._send_next()
+
+    def _send_next(self) -> None:
+        if self._waiting and self._on_its_way is None:
+            self._send(*self._waiting.popleft())
+
+    def _send(self, asked: _Asked, payload: bytes) -> None:
+        self._write(encode_frame(asked.type, self._number(asked), payload))
+
+    def _forget_requests(self) -> None:
+        self._asked.clear()
+        self._waiting.clear()
+        self._on_its_way = None
 
     def _write(self, data: bytes) -> None:
         assert self._board is not None
@@ -288,19 +322,21 @@ class Relay:
             self._board.line.write(data)
 
     def _number(self, asked: _Asked) -> int:
+        """The number of a request that is sent now."""
+        assert self._board is not None
         self._sequence = self._sequence % 255 + 1
         self._asked[self._sequence] = asked
+        self._on_its_way, self._sent_s = self._sequence, self._board.line.clock()
         return self._sequence
 
-    def _ask(self, request: schema.RenewRequest | schema.TelemetryRequest) -> None:
-        number = self._number(_Asked(None, request.TYPE, 0))
-        self._write(encode_frame(request.TYPE, number, request.pack()))
+    def _ask_for_samples(self, every: int) -> None:
+        self._send(_Asked(None, schema.TelemetryRequest.TYPE, 0), schema.TelemetryRequest(every).pack())
 
     def _want_samples(self) -> None:
         assert self._board is not None
         self._heard_s = self._board.line.clock()
         self._asked_again = False
-        self._ask(schema.TelemetryRequest(1))
+        self._ask_for_samples(1)
 
     def _stop(self) -> None:
         self._motors = None
@@ -314,6 +350,9 @@ class Relay:
         refused = frame.type == schema.Nack.TYPE
         if not refused and frame.type != asked.type | schema.REPLY_BIT:
             return
+        if frame.seq == self._on_its_way:
+            self._on_its_way = None
+            self._send_next()
         if asked.client is not None:
             if asked.client is self._motors and asked.type in _STARTS:
                 self._confirmed = True
@@ -342,7 +381,7 @@ class Relay:
         assert self._board is not None
         self._motors = None
         self._told_silent = False
-        self._asked.clear()
+        self._forget_requests()
         for client in self._clients:
             client.outbox.add_answer(wire)
         self._want_samples()
