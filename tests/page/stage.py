@@ -33,6 +33,7 @@ from greywhale.protocol.schema import (
     EnableRequest,
     HelloReply,
     HelloRequest,
+    LeadRequest,
     ParamGetReply,
     ParamGetRequest,
     RenewRequest,
@@ -63,7 +64,9 @@ FRAME_MS = 200  # a page draws so rarely: software draws, and the time is better
 PATIENCE_MS = 60_000  # a page that shows nothing for so long has hung
 # So long the board lives after a request of a verb and, every 0.1 s, a page's sign of life.
 MOVING_S, RESTING_S, ANSWER_S = 0.2, 0.03, 0.005
-LEASES = {EnableRequest.TYPE, RenewRequest.TYPE}  # of a verb that moves the arm
+# And after each lease of a verb: longer than to the next one, shorter than the points last that a board keeps.
+LEASED_S = 0.15
+LEASES = {EnableRequest.TYPE, LeadRequest.TYPE, RenewRequest.TYPE}
 ENDED = UserError("the bench has ended.")
 # A page waits half a second for an answer, four times. Here the board answers in its own time, on any machine.
 OWN_TIME = f"""
@@ -235,7 +238,7 @@ class _PacedRelay(Relay):
         super().receive(client, data)
         asked = {frame.type for frame in FrameDecoder().feed(data)}
         if client.verb:
-            self._stage.let_live(MOVING_S if asked & LEASES else ANSWER_S)
+            self._stage.let_live(LEASED_S if asked & LEASES else ANSWER_S)
         elif StopRequest.TYPE in asked:
             self._stage.let_live(1.0)
 
