@@ -41,13 +41,13 @@ DESIGN_BUDGET = 150  # the last evaluations of a search for a motion would gain 
 # Another round follows while a joint's best is above this share of before.
 WANTING = 0.5
 # A round's trials end when the joints' best together have this share of the error from before, or gained less than so
-# much in so many trials: a joint may need as many until it rests.
+# much in so many trials. A restless joint may need as many until it rests.
 GOOD, LEAST_GAIN, PATIENCE = 0.04, 0.1, MOST_SOFTER
 
 
 def is_enough(hoped: Sequence[float]) -> bool:
-    """Whether more trials are not worth their time; `hoped` is the error of the joints' best together after each trial,
-    relative to before.
+    """Whether a round's trials end here; `hoped` is the error of the joints' best together after each of them, relative
+    to before.
     """
     stalls = len(hoped) > PATIENCE and hoped[-1] > (1.0 - LEAST_GAIN) * hoped[-1 - PATIENCE]
     return stalls or hoped[-1] <= GOOD
