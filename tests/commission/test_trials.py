@@ -152,26 +152,30 @@ def test_a_combination_that_fails_on_the_arm_is_not_chosen(trials: Trials, rig: 
     assert np.array_equal(best.rows[1], stiffer(trials, [1], BETTER)[1]), "the other joint keeps its better controller"
 
 
-def test_where_a_joint_that_kept_its_controller_is_shaken_those_beside_it_step_back(
-    trials: Trials, rig: SimulatedRig, monkeypatch: pytest.MonkeyPatch
+@pytest.mark.parametrize("ends", [False, True], ids=["another joint fails beside it", "it ends the motion itself"])
+def test_what_shakes_others_or_ends_the_motion_steps_back_alone(
+    trials: Trials, rig: SimulatedRig, monkeypatch: pytest.MonkeyPatch, ends: bool
 ) -> None:
+    """Joint 1 has two better controllers, joint 2 one, and joint 3 nothing but what was before."""
     before = play_before(trials, rig)
-    mild, strong = (stiffer(trials, [1], factor) for factor in (1.5, BETTER))
+    mild, strong = (stiffer(trials, [1, 2], factor) for factor in (1.5, BETTER))
     searches = searches_of(trials)
-    for rows, score in ((mild, 0.5), (strong, 0.2)):
-        searches[1].add(rows[1], replace(before.verdicts[1], score=score), "alone")
+    for joint, rows, score in ((1, mild, 0.5), (1, strong, 0.2), (2, mild, 0.5)):
+        searches[joint].add(rows[joint], replace(before.verdicts[joint], score=score), "alone")
 
     def play(rig: ArmOnPort | None, rows: np.ndarray) -> Trial:
-        verdicts = list(before.verdicts)
-        verdicts[1] = replace(verdicts[1], score=0.5)
-        verdicts[3] = replace(verdicts[3], bearable=not np.array_equal(rows[1], strong[1]))
+        verdicts = [replace(one, score=0.9) for one in before.verdicts]
+        if np.array_equal(rows[1], strong[1]):
+            verdicts = [replace(one, known=not ends, bearable=not ends) for one in verdicts]
+            verdicts[1 if ends else 3] = replace(verdicts[3], known=True, bearable=False)
         trials.done.append(replace(before, rows=rows.copy(), verdicts=tuple(verdicts)))
         return trials.done[-1]
 
     monkeypatch.setattr(trials, "play", play)
     monkeypatch.setattr(JointSearch, "propose", lambda search: None)
     best = confirm(trials, searches, lambda: rig)  # type: ignore[arg-type, return-value]
-    assert np.array_equal(best.rows, mild)
+    assert np.array_equal(best.rows[1], mild[1])
+    assert np.array_equal(best.rows[2], mild[2]) == ends
 
 
 def test_where_nothing_passes_what_was_before_is_chosen(trials: Trials, rig: SimulatedRig) -> None:

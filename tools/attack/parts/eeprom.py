@@ -74,8 +74,9 @@ weights; ranges and rules between parameters refuse some of these. More than cha
 Two cases cannot be told, and are not tried: a board whose EEPROM was erased whole is as good as new, and a board
 that has saved exactly twice and whose second bank was then erased whole looks like one that has saved once.
 
-Of the earlier layouts the oldest, 1, is tried. From it every random set must come over with today's defaults for what it lacks,
-a save must leave a whole bank of today, and when that is lost, the old one must run and the loss must be told.
+Of the earlier layouts the oldest, 1, is tried. From it every random set must come over with today's defaults for
+what it lacks, a save must leave a whole bank of today, and when that is lost, the old one must run and the loss must be
+told.
 
 Wear: a cell is made for 100,000 writes. A save writes each cell of one bank at most once, and the first byte of
 that bank twice; the banks take turns. So each cell is written at most once per save on average, and the first one

@@ -26,9 +26,9 @@ def confirm(trials: Trials, searches: Sequence[JointSearch], arm: Callable[[], A
         trial = known or trials.play(None if trials.known() else arm(), rows)
         if trial.bearable:
             break
-        bearable = np.array([verdict.bearable for verdict in trial.verdicts])
+        failing = np.array([verdict.known and not verdict.bearable for verdict in trial.verdicts])
         kept = (rows == controllers_of(trials.table)).all(axis=1)
-        for back in (~bearable, bearable & ~kept):
+        for back in (failing, ~failing & ~kept):
             stepped = rows.copy()
             for joint in np.flatnonzero(back).tolist():
                 failed[joint].append(rows[joint].tobytes())
