@@ -52,6 +52,12 @@ def sweep(page: Page, bench: LockStepBench, pot: int) -> None:
     press(page, "Done")
 
 
+def wire(page: Page, bench: LockStepBench, mistake: str) -> None:
+    """Wire the arm so, and let the page take in all samples from before."""
+    bench.command(f"mistake {mistake}")
+    live(page, bench, 0.1)
+
+
 def live(page: Page, bench: LockStepBench, seconds: float) -> None:
     """Let so much of the board's time pass, in which the page is served."""
     until_s = bench.bench.time_s + seconds
@@ -106,11 +112,12 @@ def test_a_board_is_watched_driven_and_changed(context: BrowserContext, site: Si
         page.get_by_label("Upload a controller.toml").set_input_files(wanted)
         expect(page.get_by_text("controller.toml runs and is stored")).to_be_visible()
 
-        press(page, "Calibrate", "Begin the sweeps")
-        bench.command("mistake pot-swapped:leader0")
+        press(page, "Calibrate")
+        wire(page, bench, "pot-swapped:leader0")
+        press(page, "Begin the sweeps")
         sweep(page, bench, 0)
         expect(page.get_by_text("leader potentiometer 1 did: their wires are swapped")).to_be_visible()
-        bench.command("mistake none")
+        wire(page, bench, "none")
         press(page, "Go on")
         for number in range(len(POTS)):
             sweep(page, bench, number)
