@@ -109,6 +109,8 @@ def _reached(printed: float, *runs: Sequence[float]) -> bool:
 
 
 def _percent(values: Sequence[float | None]) -> str:
+    if all(value is None for value in values):
+        return "none to measure"
     return f"{several(values, '.0f')} %"
 
 
