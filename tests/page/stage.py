@@ -70,8 +70,8 @@ LEASES = {EnableRequest.TYPE, LeadRequest.TYPE, RenewRequest.TYPE}
 ENDED = UserError("the bench has ended.")
 # A page waits half a second for an answer, four times. Here the board answers in its own time, on any machine.
 OWN_TIME = f"""
-  requestAnimationFrame = (draw) => setTimeout(draw, {FRAME_MS}, performance.now());
   const wait = setTimeout;
+  requestAnimationFrame = (draw) => wait(draw, {FRAME_MS}, performance.now());
   setTimeout = (act, ms, ...given) => wait(act, ms < 500 ? ms : {PATIENCE_MS} / 4, ...given);
 """
 
