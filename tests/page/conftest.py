@@ -1,4 +1,4 @@
-"""One browser for all tests of the page, and a stage and a page for each."""
+"""One browser for all tests of the page, and a stage and a page for those of each file."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from playwright.sync_api import BrowserContext, Page
+from playwright.sync_api import BrowserContext, Page, expect
 
 from tests.page import stage as stages
 from tests.page.serve_folder import Site, serve
@@ -43,29 +43,23 @@ def site(folder: Path) -> Iterator[Site]:
         yield served
 
 
-@pytest.fixture
-def stage(tmp_path: Path) -> Iterator[Stage]:
-    """The server around a bench, with a folder of its own."""
-    made = Stage(tmp_path)
-    with made.open():
-        yield made
-
-
-@pytest.fixture
-def page(context: BrowserContext, stage: Stage) -> Iterator[Page]:
-    with at_rest(context, stage) as opened:
-        yield opened
-
-
 @pytest.fixture(scope="module")
-def shared_stage(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Stage]:
-    """One for all tests of a file: for those that do not mind what others did."""
+def stage(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Stage]:
+    """The server around a bench, for all tests of a file: for those that do not mind what others did."""
     made = Stage(tmp_path_factory.mktemp("folder"))
     with made.open():
         yield made
 
 
 @pytest.fixture(scope="module")
-def shared_page(context: BrowserContext, shared_stage: Stage) -> Iterator[Page]:
-    with at_rest(context, shared_stage) as opened:
+def shared_page(context: BrowserContext, stage: Stage) -> Iterator[Page]:
+    with at_rest(context, stage) as opened:
         yield opened
+
+
+@pytest.fixture
+def page(shared_page: Page) -> Iterator[Page]:
+    """It drives a board whose motors other tests have left off."""
+    yield shared_page
+    shared_page.get_by_role("button", name="Stop", exact=True).click()
+    expect(shared_page.locator(".pill")).to_have_text("disabled")

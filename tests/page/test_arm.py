@@ -20,8 +20,8 @@ def look_from(page: Page, stage: Stage, side: str) -> None:
     page.wait_for_function("seen => document.querySelector('.stage canvas').dataset.tick > seen", arg=tick)
 
 
-def test_the_arm_is_drawn_where_the_board_says(shared_page: Page, shared_stage: Stage) -> None:
-    page, stage = shared_page, shared_stage
+def test_the_arm_is_drawn_where_the_board_says(shared_page: Page, stage: Stage) -> None:
+    page = shared_page
     asked: list[str] = []
     page.on("request", lambda request: asked.append(request.url.rpartition("/")[2]))
     page.get_by_role("button", name="Controller").click()
@@ -34,8 +34,8 @@ def test_the_arm_is_drawn_where_the_board_says(shared_page: Page, shared_stage: 
     assert len(picture.getcolors(1 << 20) or []) > 50  # an empty canvas has one
 
 
-def test_a_link_dragged_in_the_picture_leads(shared_page: Page, shared_stage: Stage) -> None:
-    page, stage = shared_page, shared_stage
+def test_a_link_dragged_in_the_picture_leads(shared_page: Page, stage: Stage) -> None:
+    page = shared_page
     page.get_by_role("button", name="Arm", exact=True).click()
     expect(page.get_by_text("Drag a link to lead")).to_be_visible()
     look_from(page, stage, "Top")

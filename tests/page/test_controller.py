@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
-from playwright.sync_api import Page, expect
+from playwright.sync_api import BrowserContext, Page, expect
 
 from greywhale.protocol.schema import (
     DEFAULTS,
@@ -16,6 +18,7 @@ from greywhale.protocol.schema import (
 )
 from tests.dashboard.browser import BoardSocket
 from tests.dashboard.browser import Page as Watcher
+from tests.page.conftest import at_rest
 from tests.page.drag import drag, value_of
 from tests.page.stage import TOKEN, Stage
 
@@ -26,35 +29,37 @@ KP0 = PARAMETER_BY_NAME["joint0.kp"]
 ZE_A, ZE_C = PARAMETER_BY_NAME["joint0.ze_a"], PARAMETER_BY_NAME["joint0.ze_c"]
 
 
-def test_a_dragged_set_runs_on_the_board(page: Page, stage: Stage) -> None:
-    page.get_by_role("button", name="Controller").click()
-    expect(page.get_by_text("Nothing is stored: the board starts with these, its defaults.")).to_be_visible()
-    page.get_by_role("button", name="Joint 1").click()
-    predicted = page.locator(".predict[data-rms]")
-    before = predicted.get_attribute("data-rms")
-    drag(page, "Pe_b", 0.1)
-    assert value_of(page, "Pe_b") == pytest.approx(0.5, abs=0.03)
-    expect(page.locator(f".predict:not([data-rms='{before}'])")).to_be_visible()  # the model's answer to the new set
-    page.get_by_label("Kp 1/rad").fill("0.75")
-    page.get_by_label("Kp 1/rad").press("Enter")
-    expect(page.locator(".differences").first).to_contain_text("joint1.kp")
-    page.get_by_role("button", name="Apply").click()
-    expect(page.get_by_text("The board runs these controllers.")).to_be_visible()
-    board = stage.runs(PE_B, KP)
-    assert PE_B.to_physical(board[PE_B.name]) == pytest.approx(value_of(page, "Pe_b"), abs=PE_B.lsb)
-    assert KP.to_physical(board[KP.name]) == 0.75
-    stored = page.locator(".differences").nth(1)
-    expect(stored).to_contain_text("joint1.kp0.75 (")  # its default
-    page.get_by_role("button", name="Store").click()
-    expect(stored).to_have_text("The board has stored these controllers.")
-    page.get_by_role("button", name="Live").click()
-    expect(page.locator(".facts")).to_contain_text("written and read back")
-    page.reload()
-    page.get_by_role("button", name="Controller").click()
-    expect(stored).to_have_text("The board has stored these controllers.")
+def test_a_dragged_set_runs_on_the_board(context: BrowserContext, tmp_path: Path) -> None:
+    stage = Stage(tmp_path)
+    with stage.open(), at_rest(context, stage) as page:
+        page.get_by_role("button", name="Controller").click()
+        expect(page.get_by_text("Nothing is stored: the board starts with these, its defaults.")).to_be_visible()
+        page.get_by_role("button", name="Joint 1").click()
+        predicted = page.locator(".predict[data-rms]")
+        before = predicted.get_attribute("data-rms")
+        drag(page, "Pe_b", 0.1)
+        assert value_of(page, "Pe_b") == pytest.approx(0.5, abs=0.03)
+        expect(page.locator(f".predict:not([data-rms='{before}'])")).to_be_visible()  # the answer to the new set
+        page.get_by_label("Kp 1/rad").fill("0.75")
+        page.get_by_label("Kp 1/rad").press("Enter")
+        expect(page.locator(".differences").first).to_contain_text("joint1.kp")
+        page.get_by_role("button", name="Apply").click()
+        expect(page.get_by_text("The board runs these controllers.")).to_be_visible()
+        board = stage.runs(PE_B, KP)
+        assert PE_B.to_physical(board[PE_B.name]) == pytest.approx(value_of(page, "Pe_b"), abs=PE_B.lsb)
+        assert KP.to_physical(board[KP.name]) == 0.75
+        stored = page.locator(".differences").nth(1)
+        expect(stored).to_contain_text("joint1.kp0.75 (")  # its default
+        page.get_by_role("button", name="Store").click()
+        expect(stored).to_have_text("The board has stored these controllers.")
+        page.get_by_role("button", name="Live").click()
+        expect(page.locator(".facts")).to_contain_text("written and read back")
+        page.reload()
+        page.get_by_role("button", name="Controller").click()
+        expect(stored).to_have_text("The board has stored these controllers.")
 
 
-def test_corners_keep_to_what_the_board_takes_and_steps_can_be_undone(page: Page, stage: Stage) -> None:
+def test_corners_keep_to_what_the_board_takes_and_steps_can_be_undone(page: Page) -> None:
     page.get_by_role("button", name="Controller").click()
     drag(page, "Pe_b", -0.9)
     assert value_of(page, "Pe_b") == pytest.approx(0.01, abs=1e-4)

@@ -91,8 +91,8 @@ def search(shared_page: Page) -> Locator:
     return card
 
 
-def test_verbs_end_with_their_result_or_their_sentence(search: Locator, desk: Page, shared_stage: Stage) -> None:
-    stage, folder = shared_stage, shared_stage.folder
+def test_verbs_end_with_their_result_or_their_sentence(search: Locator, desk: Page, stage: Stage) -> None:
+    folder = stage.folder
     stage.command("hold 20")
     record = begin(desk, "record", out="first.csv", seconds="0.5", enable=True)
     result = done(record)
@@ -122,12 +122,10 @@ def test_verbs_end_with_their_result_or_their_sentence(search: Locator, desk: Pa
     expect(failed(begin(desk, "flash", hex_file="none.hex"))).to_contain_text("none.hex")
 
 
-def test_a_search_draws_its_curve_while_it_runs_and_each_joints_at_its_end(
-    search: Locator, shared_stage: Stage
-) -> None:
+def test_a_search_draws_its_curve_while_it_runs_and_each_joints_at_its_end(search: Locator, stage: Stage) -> None:
     done(search)
     assert search.evaluate("card => [...card.seen]") == ["1 curve, Best cost so far"]
-    result = next(facts["result"] for facts in shared_stage.jobs.facts() if facts["verb"] == "tune")
+    result = next(facts["result"] for facts in stage.jobs.facts() if facts["verb"] == "tune")
     for joint, curve in enumerate(result["curves"]):
         drawn = search.locator(f"polyline.joint-{joint}").get_attribute("points")
         assert drawn is not None
@@ -170,12 +168,12 @@ def facts_of(verb: str) -> Facts:
 
 
 @pytest.fixture
-def tell(shared_stage: Stage, monkeypatch: pytest.MonkeyPatch) -> Callable[[Facts], None]:
+def tell(stage: Stage, monkeypatch: pytest.MonkeyPatch) -> Callable[[Facts], None]:
     """The only job is so now: for a page that hears of it, and for one that is still about to ask."""
 
     def tell(facts: Facts) -> None:
-        monkeypatch.setattr(shared_stage.jobs, "facts", lambda: [facts])
-        for listener in shared_stage.jobs.listeners:
+        monkeypatch.setattr(stage.jobs, "facts", lambda: [facts])
+        for listener in stage.jobs.listeners:
             listener(facts)
 
     return tell
@@ -227,9 +225,9 @@ def test_nothing_bars_a_person(shared_page: Page) -> None:
 
 
 def test_the_view_says_that_it_reads_the_verbs_until_they_are_there(
-    shared_page: Page, shared_stage: Stage, monkeypatch: pytest.MonkeyPatch
+    shared_page: Page, stage: Stage, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    page, jobs, ready = shared_page, shared_stage.jobs, threading.Event()
+    page, jobs, ready = shared_page, stage.jobs, threading.Event()
     listed = jobs.listed
 
     def listed_later() -> Listed:

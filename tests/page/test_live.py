@@ -19,16 +19,21 @@ pytestmark = pytest.mark.slow
 
 LEAST_LOG = 1500  # samples
 ROUNDED = 0.51e-3  # what is shown with three digits may be off by so much
-OFF_TICKS = {"button": 300, "space": 300, "gone": 550}  # a page that is gone may be one that is only busy
+OFF_TICKS, GONE_TICKS = 300, 550  # a page that is gone may be one that is only busy
 
 
-def start(page: Page) -> None:
+def start(page: Page, stage: Stage) -> None:
+    stage.command("hold 20")  # a leader that rests is near wherever the motors were left off
+    enable(page)
+
+
+def enable(page: Page) -> None:
     page.get_by_role("button", name="Enable").click()
     expect(page.locator(".pill")).to_have_text("following")
 
 
 def test_the_page_saves_and_shows_the_boards_samples_as_they_are(page: Page, stage: Stage, tmp_path: Path) -> None:
-    start(page)
+    enable(page)
     begun = stage.newest().tick
     stage.wait_for(lambda: stage.newest().tick > begun + LEAST_LOG)
     page.get_by_role("button", name="Pause").click()
@@ -60,31 +65,34 @@ def test_the_page_saves_and_shows_the_boards_samples_as_they_are(page: Page, sta
         *angles, volts = map(float, shown[joint][-4:])
         assert angles == pytest.approx([leader, follower, leader - follower], abs=ROUNDED / 10)
         assert volts == pytest.approx(sample.voltage[joint] * Sample.LSB["voltage"], abs=ROUNDED)
+    page.get_by_role("button", name="Go on").click()
 
 
-def test_the_motors_go_off(page: Page, stage: Stage) -> None:
-    """By the button, by the space bar wherever the focus is, and when the page is gone."""
-    stage.command("hold 20")  # a leader that rests is still near when the motors go on again
-    ways: dict[str, Callable[[], None]] = {
-        "button": page.get_by_role("button", name="Stop").click,
-        "space": lambda: page.keyboard.press("Space"),
-        "gone": page.close,
-    }
-    for way, stop in ways.items():
-        start(page)
+def require_off(stage: Stage, pressed: int, within_ticks: int) -> None:
+    """The motors were off so soon after that tick."""
+    stage.wait_for(lambda: stage.newest().state is State.DISABLED)
+    running = [sample.tick for sample in stage.samples() if sample.state is State.FOLLOWING]
+    assert running[-1] - pressed <= within_ticks
+    stage.still = False
+
+
+def test_the_motors_go_off_by_the_button_and_by_the_space_bar_wherever_the_focus_is(page: Page, stage: Stage) -> None:
+    ways: list[Callable[[], None]] = [
+        page.get_by_role("button", name="Stop").click,
+        lambda: page.keyboard.press("Space"),
+    ]
+    for stop in ways:
+        start(page, stage)
         page.locator("select").first.focus()
         pressed = stage.stand_still()
         stop()
-        if way == "gone":
-            stage.live(1.0)
-        stage.wait_for(lambda: stage.newest().state is State.DISABLED)
-        running = [sample.tick for sample in stage.samples() if sample.state is State.FOLLOWING]
-        assert running[-1] - pressed <= OFF_TICKS[way], way
-        stage.still = False
+        require_off(stage, pressed, OFF_TICKS)
 
 
-def test_a_second_page_watches_and_a_reload_loses_nothing(context: BrowserContext, page: Page, stage: Stage) -> None:
-    start(page)
+def test_a_second_page_watches_a_reload_loses_nothing_and_a_page_that_is_gone_stops_the_motors(
+    context: BrowserContext, page: Page, stage: Stage
+) -> None:
+    start(page, stage)
     with stages.visit(context, stage) as second:
         expect(second.page.locator(".pill")).to_have_text("following")
         expect(second.page.get_by_role("button", name="Enable")).to_be_disabled()
@@ -99,10 +107,15 @@ def test_a_second_page_watches_and_a_reload_loses_nothing(context: BrowserContex
         kept = second.page.locator(".live").evaluate("({ dataset }) => ({ ...dataset })")
         sent = [sample.tick for sample in stage.samples() if sample.tick <= int(kept["tick"])]
         assert kept == {"first": str(sent[0]), "tick": str(sent[-1]), "count": str(len(sent))}
+        start(second.page, stage)
+        pressed = stage.stand_still()
+    stage.live(1.0)
+    require_off(stage, pressed, GONE_TICKS)
+    page.get_by_role("button", name="Take control").click()
 
 
 def test_a_fault_is_captured_and_told_with_its_remedy_until_it_is_cleared(page: Page, stage: Stage) -> None:
-    start(page)
+    start(page, stage)
     page.get_by_label("Span shown").select_option("1")
     page.get_by_label("Event").select_option("fault")
     page.get_by_role("button", name="Wait for it").click()
@@ -119,7 +132,7 @@ def test_a_fault_is_captured_and_told_with_its_remedy_until_it_is_cleared(page: 
 
 
 def test_the_clutch_is_disengaged_by_a_click_and_by_the_pedal(page: Page, stage: Stage) -> None:
-    start(page)
+    start(page, stage)
     card = page.locator(".card").filter(has_text="Clutch")
     card.get_by_role("button", name="Disengage").click()
     expect(card).to_contain_text("The reference rests")

@@ -30,8 +30,8 @@ def write(path: Path, lag: int) -> None:
             log.append(time_s, 4 * [led], 4 * [followed], 4 * [led - followed], "following")
 
 
-def test_two_logs_lie_over_each_other_with_the_measures_of_evaluate(shared_page: Page, shared_stage: Stage) -> None:
-    page, folder = shared_page, shared_stage.folder
+def test_two_logs_lie_over_each_other_with_the_measures_of_evaluate(shared_page: Page, stage: Stage) -> None:
+    page, folder = shared_page, stage.folder
     for name, lag in LAG_TICKS.items():
         write(folder / name, lag)
     page.get_by_role("button", name="Logs").click()
@@ -59,11 +59,11 @@ def test_two_logs_lie_over_each_other_with_the_measures_of_evaluate(shared_page:
         assert told[:3] == pytest.approx([led, followed, led - followed], abs=1.1e-3)
 
 
-def test_what_is_no_sound_log_is_told_as_in_a_terminal(context: BrowserContext, shared_stage: Stage) -> None:
-    write(shared_stage.folder / "good.csv", 40)
-    whole = (shared_stage.folder / "good.csv").read_text()
-    (shared_stage.folder / "bad.csv").write_text(whole.replace(",following\n", ",<b>x</b>\n", 1))
-    with stages.visit(context, shared_stage) as visit:
+def test_what_is_no_sound_log_is_told_as_in_a_terminal(context: BrowserContext, stage: Stage) -> None:
+    write(stage.folder / "good.csv", 40)
+    whole = (stage.folder / "good.csv").read_text()
+    (stage.folder / "bad.csv").write_text(whole.replace(",following\n", ",<b>x</b>\n", 1))
+    with stages.visit(context, stage) as visit:
         page = visit.page
         page.get_by_role("button", name="Logs").click()
         for name in ("good.csv", "bad.csv"):
