@@ -15,7 +15,8 @@ from greywhale_sim.lockstep import LockStepBench
 from tests.page import stage as stages
 from tests.page.serve_folder import Site
 
-TURN_S, BOOTLOADER_TURN_S = 0.02, 0.04
+# So long the board lives at a time: until it has answered what it was asked, and longer where it was asked nothing.
+ANSWER_S, TURN_S, BOOTLOADER_TURN_S = 0.01, 0.06, 0.04
 SCRIPT = Path(__file__).with_name("false_serial.js").read_text("utf-8")
 
 
@@ -55,7 +56,7 @@ class Cable:
             self._close()
         elif what == "restart":
             self._restart()
-        return None if self._line is None else self._live(self._line)
+        return None if self._line is None else self._live(self._line, ANSWER_S if given else TURN_S)
 
     def _open(self, baud: int) -> str:
         if not self.plugged:
@@ -69,10 +70,10 @@ class Cable:
         self.restarts += 1
         self._line = LINES[self._bench.port](True, self._baud)
 
-    def _live(self, line: Line) -> tuple[float, str]:
-        """Let firmware live for a turn, a bootloader until it has said all; its time in ms, and what it said."""
+    def _live(self, line: Line, turn_s: float) -> tuple[float, str]:
+        """Let firmware live so long, a bootloader until it has said all; its time in ms, and what it said."""
         said, new, firmware = b"", b"", self._baud == BAUD
-        end_s = line.clock() + (TURN_S if firmware else BOOTLOADER_TURN_S)
+        end_s = line.clock() + (turn_s if firmware else BOOTLOADER_TURN_S)
         while line.clock() < end_s or (new and not firmware):
             new = line.read()
             if said and not new and not firmware:
