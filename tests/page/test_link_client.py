@@ -26,7 +26,6 @@ from greywhale.protocol.table import ParameterTable
 from tests.page.calibrations import calibrations
 from tests.page.tuning import tuning
 from tools import ROOT
-from tools.site.build import write_bench
 
 PAGE = ROOT / "host" / "web"
 NAMES = tuple(field.name for field in fields(JointSettings))
@@ -165,7 +164,7 @@ def answers_to_parameter_files() -> list[dict[str, Any]]:
 
 
 def test_link_client_samples_law_files_bench_and_tuner_give_what_python_gives(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
     golden, law, files = tmp_path / "golden.json", tmp_path / "law.json", tmp_path / "files.json"
@@ -179,9 +178,8 @@ def test_link_client_samples_law_files_bench_and_tuner_give_what_python_gives(
     tuned = tmp_path / "tuning.json"
     tuned.write_text(json.dumps(tuning()))
     given = {"CALIBRATIONS": calibrated, "GOLDEN": golden, "LAW": law, "CONTROLLER_FILES": files, "TUNING": tuned}
-    given |= {"PARAMETER_FILES": parameters, "SITE": tmp_path}
+    given |= {"PARAMETER_FILES": parameters, "SITE": next(path for path in folder.iterdir() if path.is_dir())}
     environment = {**os.environ, **{name: str(path) for name, path in given.items()}}
-    write_bench(tmp_path)
     done = subprocess.run(
         ["node", "build.mjs", "test"], cwd=PAGE, env=environment, capture_output=True, text=True, check=False
     )

@@ -17,7 +17,7 @@ from greywhale.tune.request import TuningRequest
 from greywhale.tune.search.journal import TuningJournal
 from tools.site.tuner_data import SEED, straight_slices
 
-PACK, BUDGET = 4, 60  # every stage has more than its first pack where it can
+PACK, BUDGET = 4, 40  # every stage has more than its first pack where it can
 
 
 def straight(motion: Trajectory, wait_s: float, after_s: float = 0.0, resample: bool = False) -> Floats:
