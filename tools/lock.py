@@ -36,7 +36,7 @@ ORACLES_HEADER = """\
 # The outside references of tests/oracles, pinned with the digests of their files. What the project itself needs is
 # not repeated. Written by `make lock`.
 """
-REFERENCES = ("mujoco", "numba", "pin", "sympy")
+REFERENCES = ("mujoco", "nevergrad", "numba", "pin", "sympy")
 # Nothing of this machine's package index goes into the file.
 COMPILE = (
     "--generate-hashes", "--no-annotate", "--no-header", "--strip-extras", "--quiet",
@@ -61,8 +61,7 @@ def build() -> list[str]:
 def wanted() -> list[str]:
     """What the packages ask for to be built, run, checked and tested."""
     host = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
-    extras = [name for names in host["project"]["optional-dependencies"].values() for name in names]
-    return _foreign([*build(), *extras, *host["dependency-groups"]["dev"]])
+    return _foreign([*build(), *host["dependency-groups"]["dev"]])
 
 
 def page() -> list[str]:

@@ -157,3 +157,9 @@ def test_impossible_plans_are_refused_before_anything_runs(change: dict[str, obj
     with pytest.raises(UserError, match=sentence.replace(".", r"\.")) as refused:
         compare(Plan(**change))  # type: ignore[arg-type]
     assert refused.value.exit_code == 2
+
+
+def test_a_method_of_a_package_that_is_missing_says_how_to_install_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "nevergrad", None)
+    with pytest.raises(UserError, match=r"ngopt needs nevergrad; install it: pip install 'greywhale\[peers\]'"):
+        Plan(methods=("ngopt",)).check()

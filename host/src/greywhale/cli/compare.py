@@ -15,7 +15,7 @@ from greywhale.files.outputs import require_new
 from greywhale.optimise.comparison import Plan, compare
 from greywhale.optimise.comparison_report import ComparisonFacts, as_dict, check_format, text, write_report
 from greywhale.optimise.functions import FUNCTIONS, Setting
-from greywhale.optimise.methods import METHODS
+from greywhale.optimise.methods import METHODS, PEERS
 
 # With fewer evaluations in all, starting other processes takes longer than they save.
 SMALL = 300_000
@@ -27,7 +27,11 @@ class Answer(ComparisonFacts):
 
 @click.command("compare")
 @click.option("--functions", metavar="NAME,...", help=f"Which functions; without it all: {', '.join(FUNCTIONS)}.")
-@click.option("--methods", metavar="NAME,...", help=f"Which methods; without it all: {', '.join(METHODS)}.")
+@click.option(
+    "--methods",
+    metavar="NAME,...",
+    help=f"Which methods; without it {', '.join(METHODS)}. With greywhale[peers] also {', '.join(PEERS)}.",
+)
 @click.option(
     "--settings",
     metavar="NAME,...",

@@ -19,7 +19,7 @@ from greywhale.base.errors import BAD_USAGE, MOST_SEED, UserError, require_withi
 from greywhale.base.study import SerialWorkers, Task, Workers, run_study
 from greywhale.base.types import Floats, Progress
 from greywhale.optimise.functions import FUNCTIONS, SETTINGS, Setting, place
-from greywhale.optimise.methods import METHODS, create, minimise
+from greywhale.optimise.methods import METHODS, PEERS, create, minimise
 
 # Evaluations that a worker does in one go: short enough for a smooth progress bar, long enough to be worth a message.
 PART = 5000
@@ -27,7 +27,7 @@ PART = 5000
 
 @dataclass(frozen=True)
 class Plan:
-    """The plan of a comparison. With `pack` None every method keeps its own size: 10, CMA-ES 4 + 3 ln d."""
+    """The plan of a comparison. With `pack` None every method keeps its own size: 10, CMA-ES 4 + 3 ln d, ngopt 1."""
 
     functions: tuple[str, ...] = tuple(FUNCTIONS)
     settings: tuple[Setting, ...] = ("plain", "shifted")
@@ -43,7 +43,7 @@ class Plan:
         for what, chosen, known in (
             ("function", self.functions, FUNCTIONS),
             ("setting", self.settings, SETTINGS),
-            ("method", self.methods, METHODS),
+            ("method", self.methods, METHODS | PEERS),
         ):
             _check_names(what, chosen, tuple(known))
         require_within("dimensions", self.dimensions, 2, 1000)
@@ -54,7 +54,8 @@ class Plan:
             require_within("pack", self.pack, 1, 10_000)
         for method in self.methods:
             try:
-                create(method, np.zeros(self.dimensions), np.ones(self.dimensions), budget=1, pack=self.pack).close()
+                box = np.zeros(self.dimensions), np.ones(self.dimensions)
+                create(method, *box, budget=self.budget, pack=self.pack).close()
             except ValueError as error:
                 raise UserError(f"{error}.", BAD_USAGE) from None
 

@@ -14,6 +14,7 @@ from greywhale.optimise.box import Box
 from greywhale.optimise.cma_es import CmaEs
 from greywhale.optimise.differential_evolution import DifferentialEvolution
 from greywhale.optimise.grey_wolf import GreyWolf, GreyWolfWhale, GreyWolfWhaleAsPrinted
+from greywhale.optimise.nevergrad_choice import NevergradChoice
 from greywhale.optimise.optimiser import History, Optimiser
 from greywhale.optimise.relative import RelativeWolfWhale
 from greywhale.optimise.swarm import RandomSearch, Swarm
@@ -33,6 +34,8 @@ METHODS: dict[str, type[Optimiser]] = {
         RandomSearch,
     )
 }
+# Methods of packages that are not installed by default.
+PEERS: dict[str, type[Optimiser]] = {NevergradChoice.name: NevergradChoice}
 # At 500 evaluations on shifted functions it is ahead of differential evolution; the figures are in docs/optimise.md.
 DEFAULT = RelativeWolfWhale.name
 
@@ -77,11 +80,12 @@ def create(
     Without `pack` it has the method's own size. `start` are points (rows) that the first pack must hold; `options` are
     the method's.
     """
-    if method not in METHODS:
-        raise ValueError(f"there is no method {method!r}; there are {', '.join(METHODS)}")
+    known = METHODS | PEERS
+    if method not in known:
+        raise ValueError(f"there is no method {method!r}; there are {', '.join(known)}")
     if pack is not None:
         options["pack"] = pack
-    return METHODS[method](Box(lower, upper), budget, np.random.default_rng(seed), start=start, **options)
+    return known[method](Box(lower, upper), budget, np.random.default_rng(seed), start=start, **options)
 
 
 def minimise(
