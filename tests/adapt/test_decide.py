@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -146,6 +148,22 @@ def test_a_load_taken_up_is_no_fault_of_the_set_that_was_kept(adaptation: Adapta
                 same = controllers_of(asked.table)
                 adaptation.answer(proposal_of(asked, same, 1.0) if asked.budget else work_on(asked))
         assert adaptation.wish is None, "without fits it would be given up"
+
+
+def test_a_fit_that_explains_nothing_excuses_no_set(adaptation: Adaptation, work: Work) -> None:
+    """Such as one to stretches before and after a load was taken up."""
+    task = task_after_work(adaptation, work)
+    adaptation.answer(proposal_of(task, stiffer(1.01)))
+    work_for(adaptation, work, 2)
+    assert adaptation.on_trial
+    known = adaptation.live
+    weak = known.x + [np.log(3.0) if name.endswith("coulomb") else 0.0 for name in known.space.names]
+    adaptation.answer(replace(known, x=weak, plants=known.space.plants(weak[None])))
+    assert adaptation.live is known
+    bad = TABLE.with_controllers(stiffer(0.4))
+    for stretch in work.piece(bad):
+        adaptation.take(stretch)
+    assert [one.outcome for one in adaptation.trials] == [Outcome.WORSE]
 
 
 @pytest.mark.parametrize(("predicted", "spread"), [(0.97, 0.0), (0.6, 0.5)])

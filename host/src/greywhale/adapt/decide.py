@@ -3,7 +3,8 @@
 It is fed with stretches of work, and says what should be computed in the background and which set should run.
 
     watching, enough seen: a task; its proposal is better by more than its uncertainty: a wish, which comes at a rest
-    another set than that from the start runs: every few seconds a fit, since a load that is taken up is not its fault
+    another set than that from the start runs: every few seconds a fit, since a load that is taken up is not its fault;
+        one that does not explain what was measured is not believed
     trying, a gain told from chance: kept, watching with the new set
     trying, worse or restless or nothing told after TRIAL_MOST: a wish for the set from before, watching
 
@@ -173,22 +174,23 @@ class Adaptation:
         trial = self._trial
         if trial is not None and wish.table is trial.table:
             trial.begun = True
+            self._last_half.clear()  # what the set from before gained or lost says nothing about this one
         else:
             self._own = []
 
     def answer(self, found: Proposal | LiveModel) -> None:
         """The background is done with a search, or with a fit."""
         self._thinking = False
-        self._age = self._age_asked
-        if isinstance(found, LiveModel):
-            self.live = found
+        if isinstance(found, Proposal):
+            self._weigh(found)
+        elif self.wish is None and self._explains(found):
+            self.live, self._age = found, self._age_asked
             self._reckon_again()
-            return
-        self._weigh(found)
 
     def _weigh(self, proposal: Proposal) -> None:
         """Wish for what was found, if that promises enough."""
-        self.live, self._scale = proposal.live, proposal.scale
+        if proposal.scale.error <= BELIEVED:
+            self.live, self._scale, self._age = proposal.live, proposal.scale, self._age_asked
         if self.wish is not None or self._asked is not self.kept:
             return
         self._missed *= REMEMBERED
@@ -219,7 +221,7 @@ class Adaptation:
             self._since, self._asked = 0, self.kept
             self.searches += 1
             return self._ask(self.kept, self._own, self._budget)
-        if self.running.crc != self.start.crc and self._age >= REFIT and len(self._newest) == FITTED:
+        if self.running.crc != self.start.crc and self._age_asked >= REFIT and len(self._newest) == FITTED:
             return self._ask(self.running, self._newest, 0)
         return None
 
@@ -229,6 +231,15 @@ class Adaptation:
         return Task(self.model, self.live, table, start, tuple(stretches), budget, seed, self._threads)
 
     # --- how it decides -----------------------------------------------------------------------------------------------
+
+    def _explains(self, model: LiveModel) -> bool:
+        """Whether a fit shows the errors that were measured. One to stretches before and after a load was taken up fits
+        two arms, and what it says of any set may be wrong by orders of magnitude.
+        """
+        chain = (self._own if self._trial is None else self._trial.stretches)[-FITTED:]
+        measured = np.array([one.error for one in judged_of(chain)])
+        predicted = foresee(model, self.running, controllers_of(self.running), chain, model.plants[:1])[0]
+        return not len(measured) or Scale.of(measured, predicted).error <= BELIEVED
 
     def _doubt(self, proposal: Proposal) -> str:
         if proposal.scale.error > BELIEVED:
