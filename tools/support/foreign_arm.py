@@ -84,12 +84,21 @@ class MuJoCoPlant:
     def __init__(self, arm: ForeignArm) -> None:
         import mujoco  # only `make oracles` installs it
 
-        self._advance = mujoco.mj_step
-        self._model = mujoco.MjModel.from_xml_string(_as_soft_as_usual(mjcf(arm.parameters)))
-        self._model.opt.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
-        self._data: Any = mujoco.MjData(self._model)
+        self._engine: Any = mujoco
         self._half = 0.5 * arm.play
         self._shown = np.zeros(JOINTS)
+        self._load(arm.parameters)
+
+    def _load(self, parameters: ArmParameters) -> None:
+        self._model: Any = self._engine.MjModel.from_xml_string(_as_soft_as_usual(mjcf(parameters)))
+        self._model.opt.integrator = self._engine.mjtIntegrator.mjINT_IMPLICITFAST
+        self._data: Any = self._engine.MjData(self._model)
+
+    def become(self, parameters: ArmParameters) -> None:
+        """Have other parameters from now on, in the middle of a movement."""
+        before = self._data
+        self._load(parameters)
+        self._data.qpos[:], self._data.qvel[:] = before.qpos, before.qvel
 
     def reset(self, angles: Floats) -> None:
         """Hold the arm in a pose by hand."""
@@ -100,7 +109,7 @@ class MuJoCoPlant:
     def step(self, voltages: Floats, dt: float) -> Floats:
         self._model.opt.timestep = dt
         self._data.ctrl[:] = voltages
-        self._advance(self._model, self._data)
+        self._engine.mj_step(self._model, self._data)
         # The joint drags the wiper along at either end of the play.
         self._shown = np.clip(self._shown, self._data.qpos - self._half, self._data.qpos + self._half)
         return self._shown
@@ -120,9 +129,8 @@ def save(arm: ForeignArm, path: Path) -> Path:
     return path
 
 
-def bench_of(seed: int, folder: Path) -> LockStepBench:
+def bench_of(arm: ForeignArm, folder: Path) -> LockStepBench:
     """A bench in lock step with that arm on it."""
-    arm = foreign_arm(seed)
     options = BenchOptions(arm=save(arm, folder / "foreign.toml"))
     return LockStepBench(options, build_bench(options, MuJoCoPlant(arm)))
 
@@ -153,7 +161,7 @@ class Commissioned:
 
 def commissioned(seed: int, folder: Path, unseen: Mapping[str, Trajectory], **options: Any) -> Commissioned:
     """Commission the arm of that seed on a bench in lock step."""
-    with bench_of(seed, folder) as bench:
+    with bench_of(foreign_arm(seed), folder) as bench:
         before = recorded(bench, folder, "before", unseen)
         started = time.monotonic()
         outcome = commission(CommissioningRequest(port=bench.port, out=folder / "commission", **options))

@@ -8,13 +8,13 @@ import numpy as np
 
 from greywhale.arm import Arm, ArmParameters
 from greywhale.base.types import Floats
-from greywhale.files.arm import default_arm
 from greywhale.files.trajectory import Trajectory
 from greywhale.protocol.firmware import JOINTS
 from greywhale_sim.assemble import BenchOptions, build_bench
 from greywhale_sim.bench import SLICE_S, Bench
 from greywhale_sim.leader import LeaderPlayer
 from greywhale_sim.lockstep import LockStepBench
+from tools.support.foreign_arm import MuJoCoPlant
 
 # Motors that are off for less than this (s) do not end the work: the person waits where they are.
 PATIENCE_S = 0.3
@@ -53,10 +53,14 @@ class Person(LeaderPlayer):
         super().step(enabled, follower)
 
 
-def working_bench(motion: Trajectory, arm_at: ArmAt) -> tuple[LockStepBench, Person]:
-    """The default arm, which becomes what `arm_at` says of the seconds of work, and who works with it."""
-    options = BenchOptions()
-    bench = build_bench(options)
+def working_bench(
+    motion: Trajectory, arm_at: ArmAt, options: BenchOptions | None = None, plant: MuJoCoPlant | None = None
+) -> tuple[LockStepBench, Person]:
+    """An arm, without options the default one, which becomes what `arm_at` says of the seconds of work, and who works
+    with it. Another engine's plant moves it where one is given.
+    """
+    options = options or BenchOptions()
+    bench = build_bench(options, plant)
     person = Person(motion, lambda seconds: become(bench, arm_at(seconds)))
     bench.leader = person
     bench.place(person.home)
@@ -64,9 +68,11 @@ def working_bench(motion: Trajectory, arm_at: ArmAt) -> tuple[LockStepBench, Per
 
 
 def become(bench: Bench, parameters: ArmParameters) -> None:
-    """Let the bench's arm have other parameters from now on, where it is and at rest."""
+    """Let the bench's arm have other parameters from now on, where it is; in our engine it begins at rest."""
     plant = bench.plant
-    if isinstance(plant, Arm) and plant.parameters != parameters:
+    if isinstance(plant, MuJoCoPlant):
+        plant.become(parameters)
+    elif isinstance(plant, Arm) and plant.parameters != parameters:
         bench.plant = Arm(parameters)
         bench.plant.reset(bench.angles)
 
@@ -80,6 +86,6 @@ def grown_friction(arm: ArmParameters, factor: float) -> ArmParameters:
     return arm.model_copy(update={"joint": tuple(joints)})
 
 
-def stickier(seconds: float, within_s: float = 120.0, by: float = 0.4) -> ArmParameters:
-    """The default arm, whose friction grows evenly."""
-    return grown_friction(default_arm(), 1.0 + by * min(1.0, seconds / within_s))
+def stickier(arm: ArmParameters, within_s: float = 120.0, by: float = 0.4) -> ArmAt:
+    """An arm whose friction grows evenly."""
+    return lambda seconds: grown_friction(arm, 1.0 + by * min(1.0, seconds / within_s))
