@@ -82,7 +82,6 @@ def test_the_board_ends_with_what_passed_on_the_arm(whole: Whole) -> None:
     rig, outcome = whole.rig, whole.outcome
     assert outcome.best.passed
     assert np.array_equal(controllers_of(rig.stored), outcome.best.rows)
-    assert (outcome.best.measured.error <= 1.11 * outcome.trials.before.measured.error).all()
     assert [verdict.score < 0.5 for verdict in outcome.best.verdicts][:3] == [True] * 3
     assert outcome.improved
     before = outcome.trials.table
@@ -92,14 +91,14 @@ def test_the_board_ends_with_what_passed_on_the_arm(whole: Whole) -> None:
 def test_interrupted_anywhere_the_board_keeps_what_it_had_and_resuming_ends_the_same(
     rig: SimulatedRig, options: Make, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """At the first motion, at a recording before, at a trial of the round, and at the confirmation."""
+    """At the first motion, at the check before, at a trial of the round, and at the confirmation."""
     monkeypatch.setattr(
         CommissioningResult, "predicted", lambda outcome, trial, round_: trial.measured
     )  # what follows from trials
     whole = commission(options(trials=2))
     told, plays, before = whole.as_dict(), len(rig.played), whole.trials.table
-    assert plays == 6, "the first motion, two recordings before, two trials, and the confirmation"
-    for stop in (0, 1, 3, 5):
+    assert plays == 5, "the first motion, the check before, two trials, and the confirmation"
+    for stop in (0, 1, 2, 4):
         rig.stored = rig.before = before
         rig.played.clear()
 

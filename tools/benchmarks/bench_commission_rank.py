@@ -100,13 +100,13 @@ def ranked(seed: int) -> dict[str, Any]:
     arm, base = worn_arm(seed), ParameterTable.defaults()
     pose, half = np.array(POSE), 0.4 * (RANGE_RAD[:, 1] - RANGE_RAD[:, 0])
     check = check_motion(JointRange(pose, pose - half, pose + half))
-    befores = [checked(arm, check, base, 100 * seed + number) for number in (1, 2)]
+    before = checked(arm, check, base, 100 * seed)
     scores, errors = [], []
-    for number, rows in enumerate(sets(arm, seed), 3):
+    for number, rows in enumerate(sets(arm, seed), 1):
         table = base.with_controllers(rows)
         measured = checked(arm, check, table, 100 * seed + number)
-        limits = Limits.of(befores, (rows == default_controller()).all(axis=1))
-        scores.append(sum(one.share * one.score for one in judge(measured, befores[0], limits, ("",) * JOINTS)))
+        limits = Limits.of(before, (rows == default_controller()).all(axis=1))
+        scores.append(sum(one.share * one.score for one in judge(measured, before, limits, ("",) * JOINTS)))
         errors.append(led(arm, table))
     return {"score": scores, "led": (np.array(errors) / errors[0]).tolist()}
 

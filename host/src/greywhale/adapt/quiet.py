@@ -55,7 +55,7 @@ class Swings:
 
 def find_excess(now: Swings, before: Swings, supply_v: float) -> str:
     """A clause on what is beyond its limit, "" for nothing."""
-    limits = Limits.of([_as_measures(before)], np.zeros(JOINTS, dtype=bool))
+    limits = Limits.of(_as_measures(before), np.zeros(JOINTS, dtype=bool))
     allowed = {
         "unrest": (limits.unrest[0], 1e3, "mrad rms at rest"),
         "rattle": (limits.rattle[0], 1e3, "mrad rms of rattling"),

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from greywhale.base.types import Floats
-from greywhale.commission.measures import HAND_LED, HOLDING, NAMES, Measures
+from greywhale.commission.measures import HAND_LED, HOLDING, Measures
 from greywhale.commission.motions import PARTS
 from greywhale.motion.swings import CHATTER_AT_REST_HZ
 from greywhale.protocol.firmware import JOINTS
@@ -22,9 +22,9 @@ UNREST_GROWTH, RATTLE_GROWTH = 1.5, 2.0
 # Unrest, rattling and chatter differ from trial to trial, also with the same controllers. Up to so many times its limit
 # one of them can be borne, at a price: such a joint must follow with half the error of one that passes.
 BEARABLE, PRICE = 1.15, 2.0
-# Two recordings with the same controllers may differ by so much more than two others did: as a share, and in rad² (1
-# mrad rms). Friction holds a joint now here, now there.
-SAME_SHARE, SAME_RAD2 = 0.02, 1e-6
+# Two recordings with the same controllers may differ by so much: as a share, and in rad² (1 mrad rms). Friction holds a
+# joint now here, now there.
+SAME_SHARE, SAME_RAD2 = 0.04, 1e-6
 # Where a joint hardly moves, friction and play make its error: so much more (rad rms) nobody sees.
 UNSEEN_RAD = 0.002
 HARDLY_MOVED = [PARTS.index(name) for name in ("small moves", HOLDING)]
@@ -49,11 +49,8 @@ class Limits:
     error: Floats
 
     @classmethod
-    def of(cls, befores: Sequence[Measures], kept: npt.NDArray[np.bool_]) -> Limits:
-        """What was there before, the worst of some recordings, is never too much. `kept` (4,) marks joints whose
-        controllers are those from before.
-        """
-        before = Measures(**{name: np.fmax.reduce([getattr(one, name) for one in befores]) for name in NAMES})
+    def of(cls, before: Measures, kept: npt.NDArray[np.bool_]) -> Limits:
+        """What was there before is never too much. `kept` (4,) marks joints whose controllers are those from before."""
         error = (1.0 + np.where(kept, KEPT_SHARE, SAME_SHARE)) * before.error + SAME_RAD2
         unseen = np.maximum(error, (np.sqrt(before.error) + UNSEEN_RAD) ** 2)
         error = np.where(kept, unseen, error)

@@ -22,8 +22,8 @@ from greywhale.tune import DEFAULT_BUDGET, tune
 from greywhale.tune.model import Model, load_model
 from greywhale.tune.report.controller_file import save
 
-# A later round begins with the best so far, and needs a part of the search only.
-LATER_SHARE = 0.5
+# The trials go on with what the search found on the model; a longer one takes more time than it saves.
+BUDGET = DEFAULT_BUDGET // 2
 # A model of this arm predicts each joint's way to within this share of the tracking error (mean squares).
 MOST_APART = 0.5
 
@@ -73,7 +73,7 @@ def find_controllers(
     model: Model,
     *,
     start: Controllers,
-    budget: int | None,
+    budget: int,
     seed: int,
     threads: int,
     report: NotedProgress,
@@ -108,11 +108,6 @@ def find_controllers(
 def read_model(path: Path, seed: int, params: Path) -> Model:
     """A model to tune for. Its doubts do not refuse it, because the arm itself judges what comes of it."""
     return load_model(path, seed=seed, force=True, params=params)
-
-
-def later_budget(budget: int | None) -> int:
-    """The budget of a later round."""
-    return max(1, round(LATER_SHARE * (DEFAULT_BUDGET if budget is None else budget)))
 
 
 def with_failures(model: Model, plants: Floats) -> Model:

@@ -21,14 +21,14 @@ RATE_HZ = 200.0
 FASTEST_RAD_S, PEAK = 0.9 * FASTEST_LED_RAD_S, 1.875
 EDGE_S = 0.04
 FIRST_RAD, FIRST_EDGE_S, FIRST_HOLD_S = 0.15, 0.5, 0.7  # of the little first motion
-SMALL_RAD = (0.1, -0.05, 0.0)
+SMALL_RAD = (0.1, 0.0)
 # Shares of the room to either side, as steps in turn; each joint begins at another one.
-MOVES = (0.5, -0.3, 0.9, 0.1, -0.9, 0.3)
-HOLD_S = 1.4
-REACHES_SEED, REACHES_S = 3005, 9.0  # each joint goes far; these judge nothing anywhere else
+MOVES = (0.9, -0.6, 0.3)
+HOLD_S = 1.3
+REACHES_SEED, REACHES_S = 3281, 5.5  # each joint goes far; these judge nothing anywhere else
 REACHES_SHARE = 0.8  # of the room
-SLOW_S, SLOW_SHARE = 5.0, 0.4
-PAUSE_S = 1.0
+SLOW_S, SLOW_SHARE = 4.0, 0.35
+PAUSE_S = 0.3
 STILL_SHARES, STILL_EDGE_S, STILL_HOLD_S = (0.6, -0.5, 0.0), 0.4, 0.4
 PARTS = ("small moves", "moves", "reaches", "slow motion", "holding still")
 
@@ -89,7 +89,7 @@ def check_motion(room: JointRange) -> Check:
 
 def _turned(number: int) -> Floats:
     """The share of every joint at a step; joints 1 and 3 go the other way."""
-    shares = [MOVES[(number + 2 * joint) % len(MOVES)] for joint in range(JOINTS)]
+    shares = [MOVES[(number + joint) % len(MOVES)] for joint in range(JOINTS)]
     return np.array([-share if joint % 2 else share for joint, share in enumerate(shares)])
 
 
@@ -141,7 +141,7 @@ def _slow(room: JointRange) -> Trajectory:
     swing = SLOW_SHARE * np.sin(turn) * minimum_jerk(time_s / 1.0)
     sides = np.array([1.0, -1.0, 1.0, -1.0])
     angles = np.array([room.place(share * sides) for share in swing])
-    return _back(Trajectory(time_s, angles), room.pose)
+    return Trajectory(np.append(time_s, SLOW_S + PAUSE_S), np.vstack([angles, room.pose]))
 
 
 def _back(motion: Trajectory, pose: Floats) -> Trajectory:

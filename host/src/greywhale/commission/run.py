@@ -143,7 +143,7 @@ class _Commissioning:
             f"controller-{number}",
             learn.with_failures(model, failing_plants(model.arm, self.trials)),
             start=self._best_rows(),
-            budget=options.budget if number == 1 else learn.later_budget(options.budget),
+            budget=options.budget or learn.BUDGET,
             seed=options.seed,
             threads=options.threads,
             report=report,

@@ -21,7 +21,7 @@ from greywhale.protocol.firmware import JOINTS
 from greywhale.protocol.table import CONTROLLER_COLUMNS, ParameterTable
 from greywhale.simulate.controllers import controllers_of
 
-BEFORE, AGAIN = "before", "before-again"
+BEFORE = "before"
 _COLUMNS = len(CONTROLLER_COLUMNS)
 
 
@@ -95,7 +95,6 @@ class Trials:
         self.done: list[Trial] = []
         self.foresight: Foresight | None = None  # of the model of this round
         self.others: dict[str, int] = {}  # raw, what the model says besides controllers, for the trials to come
-        self._befores: list[Measures] = []
 
     @property
     def before(self) -> Trial:
@@ -110,26 +109,22 @@ class Trials:
         return self.book.get(self._next_name()) is not None
 
     def play_before(self, rig: ArmOnPort | None) -> Trial:
-        """Play the check with the controllers from before; twice, to see how much two recordings differ."""
-        rows = controllers_of(self.table)
-        seen: list[tuple[Path, PlayedMotion, Traces, Measures]] = []
-        for name in (BEFORE, AGAIN):
-            path, played = self._played(name, rig, rows, watched=False)
-            if played.stopped:
-                raise UserError(
-                    f"with the controllers from before, the check ended early: {played.stopped}; narrow the --range, "
-                    "or upload calmer controllers first."
-                )
-            seen.append((path, played, *self._measured(played)))
-        self._befores = [measured for *_, measured in seen]
-        self.done.append(self._judged(BEFORE, rows, *seen[0]))
-        return self.before
+        """Play the check with the controllers from before."""
+        trial = self._tried(rig, controllers_of(self.table), watched=False)
+        if trial.stopped:
+            raise UserError(
+                f"with the controllers from before, the check ended early: {trial.stopped}; narrow the --range, or "
+                "upload calmer controllers first."
+            )
+        return trial
 
     def play(self, rig: ArmOnPort | None, rows: Controllers) -> Trial:
         """Play the check with these controllers, or take the result from the journal."""
+        return self._tried(rig, rows, watched=True)
+
+    def _tried(self, rig: ArmOnPort | None, rows: Controllers, watched: bool) -> Trial:
         name = self._next_name()
-        path, played = self._played(name, rig, rows, watched=True)
-        trial = self._judged(name, rows, path, played, *self._measured(played))
+        trial = self._judged(name, rows, *self._played(name, rig, rows, watched))
         self.done.append(trial)
         return trial
 
@@ -155,17 +150,14 @@ class Trials:
         return sorted([*whole, self.before], key=lambda one: one.value)
 
     def _next_name(self) -> str:
-        return f"trial-{len(self.done):02d}" if self.done else AGAIN
+        return f"trial-{len(self.done):02d}" if self.done else BEFORE
 
-    def _measured(self, played: PlayedMotion) -> tuple[Traces, Measures]:
+    def _judged(self, name: str, rows: Controllers, path: Path, played: PlayedMotion) -> Trial:
         traces = traces_of(played.log, self.check)
-        return traces, measure(traces, self.check, self.table.supply_v)
-
-    def _judged(
-        self, name: str, rows: Controllers, path: Path, played: PlayedMotion, traces: Traces, measured: Measures
-    ) -> Trial:
+        measured = measure(traces, self.check, self.table.supply_v)
+        before = self.before.measured if self.done else measured
         guilty = [played.stopped if joint == played.joint else "" for joint in range(JOINTS)]
         kept = (rows == controllers_of(self.table)).all(axis=1)
         foreseen = ("",) * JOINTS if self.foresight is None else self.foresight.clauses(rows)
-        verdicts = judge(measured, self._befores[0], Limits.of(self._befores, kept), guilty, foreseen)
+        verdicts = judge(measured, before, Limits.of(before, kept), guilty, foreseen)
         return Trial(name, rows.copy(), self.table_of(rows), path, played.stopped, measured, verdicts, traces)
