@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import gc
 import tomllib
+import weakref
 from pathlib import Path
 from typing import ClassVar
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from pydantic import BaseModel, Field
+from pydantic import BaseModel, Field, field_validator
 
 from greywhale.base.errors import UserError
 from greywhale.base.formats import toml_file, toml_text
@@ -30,6 +32,15 @@ class Mast(toml_file.Table):
     kinds: ClassVar = (Kind.ARM, Kind.MODEL)
 
     height: float
+
+
+class Even(toml_file.Table):
+    spokes: int
+
+    @field_validator("spokes")
+    @classmethod
+    def _even(cls, spokes: int) -> int:
+        raise ValueError("an even number")
 
 
 class Loose(BaseModel):
@@ -89,6 +100,19 @@ def test_another_kind_is_told_by_its_name_and_no_model_is_less_strict(
 ) -> None:
     with pytest.raises(UserError, match=rf"f\.toml: .*{words}"):
         toml_file.loads(text, model, "f.toml")
+
+
+def test_a_refused_file_keeps_nothing_alive() -> None:
+    def refuse() -> weakref.ref[Cart]:
+        held = Cart(wheel=(Wheel(radius=1.0),))
+        with pytest.raises(UserError) as refused:
+            toml_file.check({"spokes": 3}, Even, "a.toml")
+        assert "an even number" in refused.value.message
+        return weakref.ref(held)
+
+    kept = refuse()
+    gc.collect()
+    assert kept() is None
 
 
 def test_files_that_cannot_be_read(tmp_path: Path) -> None:

@@ -78,7 +78,9 @@ def check(data: dict[str, Any], model: type[Model], name: str) -> Model:
     except ValidationError as error:
         if issubclass(model, Table) and model.kinds:
             refuse_other_kind(data, name, *model.kinds)
-        raise UserError(_sentence(name, model, error)) from None
+        sentence = _sentence(name, model, error)
+    # Not within `except`: the collector cannot look into pydantic's error, and would keep all that the frames hold.
+    raise UserError(sentence)
 
 
 def advice(key: str, known: Iterable[str]) -> str:
