@@ -31,6 +31,8 @@ HARDLY_MOVED = [PARTS.index(name) for name in ("small moves", HOLDING)]
 # A joint that keeps its controller feels its neighbours' quicker moves, and how stiffly they rest. It is no worse
 # controller, so what nobody sees never counts against it.
 KEPT_SHARE, KEPT_GROWTH = 0.1, 2.0
+# While it holds still, quicker neighbours push it; that it rests by itself shows after its own moves.
+PUSHED, LEAST_PUSHED = PARTS.index(HOLDING), 0.003
 # The parts whose error ranks controllers as a person's reaches do (docs/commission.md). In the others it has a limit.
 LED = [PARTS.index(name) for name in HAND_LED]
 
@@ -55,13 +57,11 @@ class Limits:
         unseen = np.maximum(error, (np.sqrt(before.error) + UNSEEN_RAD) ** 2)
         error = np.where(kept, unseen, error)
         error[HARDLY_MOVED] = unseen[HARDLY_MOVED]
+        growth = np.tile(np.where(kept, KEPT_GROWTH, UNREST_GROWTH), (len(PARTS), 1))
+        least = np.full((len(PARTS), 1), LEAST_UNREST)
+        growth[PUSHED], least[PUSHED] = KEPT_GROWTH, LEAST_PUSHED
         return cls(
-            unrest=_allowed(
-                before.unrest,
-                lambda known: _grow_beyond_noise(known, np.where(kept, KEPT_GROWTH, UNREST_GROWTH)),
-                LEAST_UNREST,
-                MOST_UNREST,
-            ),
+            unrest=_allowed(before.unrest, lambda known: _grow_beyond_noise(known, growth), least, MOST_UNREST),
             rattle=_allowed(before.rattle, lambda known: RATTLE_GROWTH * known, LEAST_RATTLE, MOST_RATTLE),
             chatter=np.maximum(CHATTER_AT_REST_HZ, 1.1 * np.nan_to_num(before.chatter)),
             error=error,
@@ -163,7 +163,7 @@ def _closest(measured: Measures, limits: Limits, name: str, joint: int) -> _Clos
     return _Closest(float(values[part]), float(most[part]))
 
 
-def _allowed(before: Floats, grow: Callable[[Floats], Floats], least: float, most: float) -> Floats:
+def _allowed(before: Floats, grow: Callable[[Floats], Floats], least: Floats | float, most: float) -> Floats:
     known = np.nan_to_num(before)
     allowed: Floats = np.maximum(np.clip(grow(known), least, most), known * (1.0 + SAME_SHARE))
     return allowed

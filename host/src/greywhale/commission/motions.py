@@ -24,7 +24,7 @@ FIRST_RAD, FIRST_EDGE_S, FIRST_HOLD_S = 0.15, 0.5, 0.7  # of the little first mo
 SMALL_RAD = (0.1, 0.0)
 # Shares of the room to either side, as steps in turn; each joint begins at another one.
 MOVES = (0.9, -0.6, 0.3)
-HOLD_S = 1.3
+HOLD_S, REST_S = 1.3, 2.2  # at the end long enough for a joint that breaks loose late
 REACHES_SEED, REACHES_S = 3281, 5.5  # each joint goes far; these judge nothing anywhere else
 REACHES_SHARE = 0.8  # of the room
 SLOW_S, SLOW_SHARE = 4.0, 0.35
@@ -72,7 +72,7 @@ def check_motion(room: JointRange) -> Check:
     moves = [room.pose, *(room.place(_turned(number)) for number in range(len(MOVES))), room.pose]
     pieces = (
         _through(small, [PAUSE_S] + [HOLD_S] * len(SMALL_RAD), EDGE_S),
-        _through(moves, [0.1] + [HOLD_S] * (len(moves) - 1), EDGE_S),
+        _through(moves, [0.1] + [HOLD_S] * (len(moves) - 2) + [REST_S], EDGE_S),
         _reaches(room),
         _slow(room),
         _through(_still(room), [0.1] + [STILL_HOLD_S] * (2 * len(STILL_SHARES) - 1) + [PAUSE_S], STILL_EDGE_S),
