@@ -80,7 +80,7 @@ def whole(tmp_path_factory: pytest.TempPathFactory) -> Whole:
 
 def test_the_board_ends_with_what_passed_on_the_arm(whole: Whole) -> None:
     rig, outcome = whole.rig, whole.outcome
-    assert outcome.best.passed
+    assert outcome.best.bearable
     assert np.array_equal(controllers_of(rig.stored), outcome.best.rows)
     assert [verdict.score < 0.5 for verdict in outcome.best.verdicts][:3] == [True] * 3
     assert outcome.improved
@@ -235,7 +235,7 @@ def test_of_an_arm_with_two_joints_those_are_tried_and_the_others_keep_what_they
     model = write_model(tmp_path / "two.toml", arm, joints=(0, 1), parameters=before.changes())
     outcome = commission(options(model=model, arm_file=str(tmp_path / "arm.toml"), trials=2))
     assert outcome.improved
-    assert outcome.best.passed
+    assert outcome.best.bearable
     assert [verdict.score < 0.5 for verdict in outcome.best.verdicts] == [True] * 4
     assert outcome.best.score > 1e-3, "joints that are not in use do not count"
     assert rig.stored.joints_in_use == (0, 1)

@@ -27,12 +27,12 @@ SOFTER = {KP: 0.5, KD: 0.8, KI: 0.1}
 FIRST_SOFTER = {KP: 0.5, KD: 1.2, KI: 0.1}
 QUIETER = {KD: 0.6}
 MOST_SOFTER = 3
-# Where it is hardly too much (up to so many times), the step is a part of these, as a power.
-HARDLY, GENTLY = 1.5, 0.35
+# From so many times its limit on, the step is whole; for less it is a part of it, as a power, but never less than this.
+FAR, GENTLY = 4.0, 0.35
 # The steps of the search: stiffer, more integral part against friction, more damping, softer, less integral part.
-STEPS: tuple[dict[int, float], ...] = ({KP: 1.5, KD: 1.3}, {KI: 6.0}, {KD: 1.4}, {KP: 0.7}, {KI: 0.15})
-# A step that follows better, but is hardly too much (as above), is made again half as far.
-HALF = 0.5
+STEPS: tuple[dict[int, float], ...] = ({KP: 1.8, KD: 1.45}, {KI: 6.0}, {KD: 1.4}, {KP: 0.7}, {KI: 0.15})
+# A step that follows better, but is restless by less than so many times, is made again half as far, at most twice.
+HARDLY, HALF, HALVES = 2.5, 0.5, 2
 LEAST_KI, MOST_KI = 30.0, 300.0  # V/(rad s), where a step enlarges it; less does next to nothing in a move
 
 
@@ -61,7 +61,8 @@ class JointSearch:
     _softened: int = 0
     _step: int = 0
     _from: Row | None = None
-    _factors: dict[int, float] | None = None  # of the step that is on trial, None where it is not to be halved
+    _factors: dict[int, float] | None = None  # of the step that is on trial
+    _halved: int = 0  # how often that step was made again half as far
 
     @property
     def best(self) -> TriedController:
@@ -94,12 +95,12 @@ class JointSearch:
         if halved is not None and self._is_new(halved) and promises(halved):
             return halved
         if self._from is None or not np.array_equal(self._from, centre.row):
-            if self._from is not None and self._factors is not None:
+            if self._from is not None and self._halved == 0:
                 # What helped once may help twice, but not what helped only half as far.
                 self._step = max(0, self._step - 1)
             self._from = centre.row
         while self._step < len(STEPS):
-            self._factors = STEPS[self._step]
+            self._factors, self._halved = STEPS[self._step], 0
             row = self._scaled(centre.row, self._factors)
             self._step += 1
             if row is not None and self._is_new(row) and promises(row):
@@ -119,17 +120,19 @@ class JointSearch:
     def _halve(self, centre: TriedController) -> Row | None:
         """The last step from `centre`, half as far: where it follows better, but is hardly too much."""
         last, factors = self.tried[-1].verdict, self._factors
-        if factors is None or not last.restless or last.excess > HARDLY or not last.score < centre.verdict.score:
+        helps = last.restless and last.excess <= HARDLY and last.score < centre.verdict.score
+        if factors is None or self._halved == HALVES or not helps:
             return None
-        self._factors = None
-        return self._scaled(centre.row, {column: factor**HALF for column, factor in factors.items()})
+        self._halved += 1
+        self._factors = {column: factor**HALF for column, factor in factors.items()}
+        return self._scaled(centre.row, self._factors)
 
     def _soften(self, last: TriedController) -> Row | None:
         factors = FIRST_SOFTER if self._softened == 0 else SOFTER
         if last.verdict.chatters_only:
             factors = QUIETER
-        if last.verdict.excess <= HARDLY:
-            factors = {column: factor**GENTLY for column, factor in factors.items()}
+        part = float(np.clip(np.log(last.verdict.excess) / np.log(FAR), GENTLY, 1.0))
+        factors = {column: factor**part for column, factor in factors.items()}
         self._softened += 1
         return self._scaled(last.row, factors)
 
