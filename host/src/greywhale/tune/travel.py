@@ -1,8 +1,8 @@
 """How far a voltage moves each joint of an identified arm: by these numbers the board holds back a joint that stands.
 
 A joint that has had more voltage than holds it, for longer than it takes to move it, is held back (docs/firmware.md).
-Too low a breakaway voltage holds back a joint that only carries something; too high a one lets a joint with a frozen
-potentiometer creep on.
+Too low a breakaway voltage holds back a joint that only sticks; too high a one lets a joint with a frozen potentiometer
+creep on. What a joint carries beyond its model the board finds out itself.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ import numpy as np
 from greywhale.arm import ArmParameters
 from greywhale.arm.body import Body
 from greywhale.arm.parameters import JOINT_NAMES
-from greywhale.arm.plants import columns, plant_row, rigid_joints
+from greywhale.arm.plants import columns, rigid_joints
 from greywhale.base.types import Floats, PerJoint
 from greywhale.identify import sampled_plants
 from greywhale.protocol import schema
@@ -27,7 +27,6 @@ SAMPLES, SEED = 64, 0
 DEVIATIONS = 3.0  # of what the model leaves open
 LEAST_MARGIN = 0.25  # of the friction, which differs from place to place, and from day to day
 LEAST_V = 0.3  # 0 would mean that nothing is known
-CARRIED_KG = 0.2  # what a hand at the tip may take up
 MOST_OF_SUPPLY = 0.8  # a joint that stands gets all of the supply in the end, and the limit must lie below that
 GRAVITY = ("gravity_1", "gravity_12", "gravity_2")
 
@@ -98,9 +97,7 @@ def travel_of(arm: ArmParameters, table: ParameterTable, samples: int = SAMPLES)
     friction, gravity = _each(plants, "breakaway") / _torque_per_volt(plants), _gravity_volts(plants)
     spread = friction + np.abs(gravity - gravity[0])
     deviation = np.sqrt(np.sum((spread - spread[0]) ** 2, axis=0) / max(samples - 1, 1))
-    heavier = arm.model_copy(update={"tip": arm.tip.model_copy(update={"mass": arm.tip.mass + CARRIED_KG})})
-    carried = _gravity_volts(plant_row(heavier)[None])[0] - gravity[0]
-    wanted = friction[0] + np.maximum(LEAST_MARGIN * friction[0], DEVIATIONS * deviation) + carried
+    wanted = friction[0] + np.maximum(LEAST_MARGIN * friction[0], DEVIATIONS * deviation)
     most = MOST_OF_SUPPLY * table.supply_v
     damping, per_volt = _each(plants, "damping")[0], _torque_per_volt(plants)[0]
     inertia = _each(plants, "inertia")[0] + np.diagonal(Body.of(plants[0]).mass_matrix(np.zeros((1, JOINTS)))[0])
