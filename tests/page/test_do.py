@@ -119,6 +119,7 @@ def test_verbs_end_with_their_result_or_their_sentence(search: Locator, desk: Pa
     expect(done(begin(desk, "params restore", file="kept.toml"))).to_contain_text("joint0.kp")
     assert stage.runs() == {}
     expect(failed(identify)).to_contain_text("first.csv: only 0.")
+    expect(identify.get_by_label("What the verb says")).to_be_hidden()  # which is the same sentence
     expect(failed(begin(desk, "flash", hex_file="none.hex"))).to_contain_text("none.hex")
 
 

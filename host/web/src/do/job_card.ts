@@ -53,7 +53,7 @@ export class JobCard {
     }
     setText(this.text, job.progress && running ? this.step(job.progress) : "");
     setText(this.error, job.error ?? "");
-    const lines = job.said.join("\n");
+    const lines = job.said.filter((line) => line !== `greywhale: ${job.error}`).join("\n");
     this.said.hidden = !lines;
     this.joint.hear(running && job.verb === "calibrate" ? job.said : []);
     if (this.said.textContent !== lines) {
