@@ -42,6 +42,8 @@ from greywhale.protocol.schema import (
     StopRequest,
     param_crc,
 )
+from greywhale_sim.bench import SLICE_S
+from greywhale_sim.leader import LET_GO_S
 from greywhale_sim.lockstep import LockStepBench
 from greywhale_sim.words import lock_step
 from tests.dashboard.browser import BoardSocket
@@ -134,6 +136,11 @@ class Stage:
             self._commands.append((text, asked))
             self._ready.notify_all()
         return asked.result()
+
+    def hold(self, degrees: int) -> None:
+        """Let the leader rest there; hands take the arms so long after the motors went off."""
+        self.live(LET_GO_S + SLICE_S)
+        self.command(f"hold {degrees}")
 
     def runs(self, *changed: Parameter) -> dict[str, int]:
         """The raw values of these parameters, asked by another client; all others of the running set are defaults."""

@@ -77,7 +77,7 @@ def test_corners_keep_to_what_the_board_takes_and_steps_can_be_undone(page: Page
 
 
 def test_two_controllers_are_compared_on_the_running_arm_by_one_key(page: Page, stage: Stage) -> None:
-    stage.command("hold 20")  # a leader that rests is still near when the motors go on again
+    stage.hold(20)  # a leader that rests is still near when the motors go on again
     page.get_by_role("button", name="Enable").click()
     expect(page.locator(".pill")).to_have_text("following")
     page.get_by_role("button", name="Controller").click()

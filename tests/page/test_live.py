@@ -23,7 +23,7 @@ OFF_TICKS, GONE_TICKS = 300, 550  # a page that is gone may be one that is only 
 
 
 def start(page: Page, stage: Stage) -> None:
-    stage.command("hold 20")  # a leader that rests is near wherever the motors were left off
+    stage.hold(20)  # a leader that rests is near wherever the motors were left off
     enable(page)
 
 
