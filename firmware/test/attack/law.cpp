@@ -39,13 +39,16 @@ void Law::take(const params::Table& table) {
   }
 }
 
-void Law::start() {
-  for (fuzzy_pdi::Joint& joint : joints_) fuzzy_pdi::reset(joint.coefficients, joint.state);
+void Law::start(bool after_short_stop) {
+  for (fuzzy_pdi::Joint& joint : joints_) {
+    const bool keep = after_short_stop && joint.coefficients.integral != 0;
+    fuzzy_pdi::reset(joint.coefficients, joint.state, keep ? joint.state.integral : 0);
+  }
+  known_ = !after_short_stop || (known_ && !control_);
   volts_mv_ = {};
   ticks_on_ = 0;
   until_control_ = 1;
   control_ = false;
-  known_ = true;
 }
 
 void Law::tick() {

@@ -17,7 +17,7 @@ bool can_run(const params::Table& table);
 class Law {
  public:
   void take(const params::Table& table);  // the set that should run, which can be run
-  void start();                           // the motors have gone on
+  void start(bool after_short_stop);      // the motors have gone on; after a short stop the integrals go on
   void tick();                            // they were on in this tick
   void judge(const wire::Sample& sample, bool leading);
 
@@ -33,7 +33,7 @@ class Law {
   std::uint32_t ticks_on_ = 0;
   std::uint8_t until_control_ = 1;
   bool control_ = false;  // the last tick was one of control, and its sample has not been seen
-  bool known_ = false;    // no sample of a tick of control was missed since the start
+  bool known_ = false;    // no sample of a tick of control was missed since the integrals began
 };
 
 }  // namespace attack

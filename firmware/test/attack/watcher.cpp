@@ -12,6 +12,8 @@
 namespace attack {
 namespace {
 
+constexpr std::uint8_t short_stop_ticks = 64;
+
 bool on(wire::State state) { return state == wire::State::soft_start || state == wire::State::following; }
 
 template <class Message>
@@ -55,6 +57,7 @@ void Watcher::after_boot(bool damaged) {
   staged_ = running_;
   stored_ = {running_};
   pressed_ = save_asked_ = applying_ = leading_ = safe_begun_ = safe_used_ = just_granted_ = reference_known_ = false;
+  short_stop_ = 0;
   ticks_at_rail_ = {};
 }
 
@@ -93,6 +96,7 @@ void Watcher::tick() {
   }
   if (!board.drivers) {
     if (were_on) went_off(false);
+    if (short_stop_ != 0) --short_stop_;
     return;
   }
   law_.tick();
@@ -183,13 +187,14 @@ void Watcher::went_on(const Piece& piece) {
   must(!pressed_, "nothing starts while the emergency stop is pressed");
   safe_begun_ = false;
   reference_known_ = false;
-  law_.start();
+  law_.start(short_stop_ != 0);
 }
 
 // After unrest the board goes on by itself with the safe set, when it may.
 void Watcher::went_off(bool by_host) {
   const bool host_led = leading_;
   leading_ = just_granted_ = reference_known_ = false;
+  short_stop_ = by_host ? short_stop_ticks : std::uint8_t{0};
   const wire::StatusReply status = machine_.status();
   judge_memory(status);
   if (by_host || host_led || safe_used_ || !restarts_by_itself(status)) return;

@@ -52,10 +52,11 @@ class Watcher {
   std::uint16_t apply_crc_ = 0;
   std::uint16_t lease_ = 0;  // ticks, 0 = until stop
   bool leading_ = false;
-  bool safe_begun_ = false;    // the board has staged the safe set by itself, and may start the motors once
-  bool safe_used_ = false;     // not again before an apply
-  bool just_granted_ = false;  // by enable, no tick since
-  bool pressed_ = false;       // the emergency stop, in the last tick
+  bool safe_begun_ = false;      // the board has staged the safe set by itself, and may start the motors once
+  bool safe_used_ = false;       // not again before an apply
+  bool just_granted_ = false;    // by enable, no tick since
+  bool pressed_ = false;         // the emergency stop, in the last tick
+  std::uint8_t short_stop_ = 0;  // ticks that are left of one
   std::array<std::uint8_t, 8> ticks_at_rail_ = {};
   std::array<std::int16_t, 4> reference_ = {};
   std::uint32_t reference_tick_ = 0;

@@ -1,4 +1,8 @@
 // See controllers.h.
+#ifdef __AVR__
+#pragma GCC optimize("Os")  // step() is in the header; here flash is short
+#endif
+
 #include "controllers.h"
 
 namespace app {
@@ -13,15 +17,15 @@ fuzzy_pdi::Settings settings_of(const params::Table& table, uint8_t joint) {
 }  // namespace
 
 fuzzy_pdi::Refusal Controllers::take(const params::Table& table, uint8_t joint) {
-  fuzzy_pdi::Joint& own = joints_[joint];
-  const fuzzy_pdi::Refusal refusal = fuzzy_pdi::compile(settings_of(table, joint), table.period_ms, own.coefficients);
-  fuzzy_pdi::reset(own.coefficients, own.state);
-  return refusal;
+  return fuzzy_pdi::compile(settings_of(table, joint), table.period_ms, joints_[joint].coefficients);
 }
 
-void Controllers::reset() {
+// A controller without an integral part would keep for ever what another left to it.
+void Controllers::reset(bool keep_integrals) {
   for (uint8_t i = 0; i < hal::joint_count; ++i) {
-    fuzzy_pdi::reset(joints_[i].coefficients, joints_[i].state);
+    fuzzy_pdi::Joint& own = joints_[i];
+    const bool keep = keep_integrals && own.coefficients.integral != 0;
+    fuzzy_pdi::reset(own.coefficients, own.state, keep ? own.state.integral : 0);
     volts_[i] = 0;
   }
 }

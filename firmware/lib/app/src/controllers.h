@@ -60,7 +60,8 @@ class Controllers {
   // Takes a joint's settings, unless they cannot be run. Only while the motors are off. It takes most of a tick.
   fuzzy_pdi::Refusal take(const params::Table& table, uint8_t joint);
 
-  void reset();
+  // Due when the motors go off and on. The integrals are in volts, so they fit another set too.
+  void reset(bool keep_integrals);
   // The voltage that may be used from the next tick on: a share of the supply.
   void set_limit(uint16_t supply_mv, uint16_t share_q15) { limit_mv_ = signal_chain::limit_mv(supply_mv, share_q15); }
   uint16_t limit_mv() const { return limit_mv_; }

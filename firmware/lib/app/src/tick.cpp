@@ -9,6 +9,10 @@
 namespace app {
 namespace {
 
+// A host that stops the motors for no longer, to run another set, starts them again without a bump: what the integrals
+// hold the arm with goes on.
+constexpr uint8_t short_stop_ticks = 64;
+
 constexpr uint8_t checked_parts = hal::joint_count + 4;
 
 // Sets the LED every 32 ms: on while following, quick while starting, a short flash each second while disabled, 4 Hz in
@@ -91,8 +95,11 @@ __attribute__((noinline)) void Tick::note_rails() {
 
 __attribute__((noinline)) void Tick::switch_drivers() {
   drivers_on_ = !drivers_on_;
-  if (!drivers_on_) hal::set_drivers(false);
-  controllers_.reset();
+  if (!drivers_on_) {
+    hal::set_drivers(false);
+    short_stop_ = supervisor_.stop_reason() == supervisor::StopReason::host ? short_stop_ticks : uint8_t{0};
+  }
+  controllers_.reset(short_stop_ != 0);
   drive_.release();
   sampling_.hold(drivers_on_);
   until_control_ = 1;
@@ -147,6 +154,7 @@ bool Tick::finish() {
 __attribute__((noinline)) void Tick::prepare_next() {
   sampling_.prepare_low_passes();
   set_limit();
+  if (short_stop_ != 0) --short_stop_;
   show(supervisor_.state(), static_cast<uint16_t>(number_));
 }
 

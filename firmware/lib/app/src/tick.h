@@ -103,6 +103,7 @@ class Tick {
   uint32_t number_ = 0;
   uint16_t late_ticks_ = 0, longest_us_ = 0;
   uint8_t until_control_ = 0;  // ticks
+  uint8_t short_stop_ = 0;     // ticks that are left of one
   bool drivers_on_ = false;
   bool finished_ : 1, checked_ : 1;  // since the last tick
   bool led_ : 1;                     // the reference has been moved on since then

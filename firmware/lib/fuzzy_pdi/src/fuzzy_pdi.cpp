@@ -7,7 +7,7 @@
 
 namespace fuzzy_pdi {
 
-void reset(const Coefficients& c, State& state) { state = {0, 0, c.ce_ticks, 0, {}}; }
+void reset(const Coefficients& c, State& state, int32_t integral) { state = {integral, 0, c.ce_ticks, 0, {}}; }
 
 #if defined(__AVR__) && !defined(FUZZY_PDI_PORTABLE)
 

@@ -71,8 +71,8 @@ struct Output {
 // Derives the coefficients. Leaves `out` untouched unless it returns Refusal::none. Divides: not for the tick.
 Refusal compile(const Settings& settings, uint8_t period_ms, Coefficients& out);
 
-// Begins anew; due before the first step and whenever the coefficients have changed.
-void reset(const Coefficients& c, State& state);
+// Begins anew, but for an integral that goes on; due before the first step and whenever the coefficients have changed.
+void reset(const Coefficients& c, State& state, int32_t integral = 0);
 
 // a - b, saturated so that its size has 15 bits.
 inline int16_t difference(int16_t a, int16_t b) {

@@ -160,8 +160,8 @@ class Bench {
     REQUIRE(state() == wire::State::following);
   }
 
-  // Stages values one by one and applies them.
-  Frame apply(const params::Table& table) {
+  // Stages values one by one.
+  void stage(const params::Table& table) {
     for (std::uint8_t i = 0; i < params::count; ++i) {
       std::int32_t value = 0;
       REQUIRE(params::get(table, i, value) == params::Access::ok);
@@ -169,6 +169,9 @@ class Bench {
       CHECK(reply.index == i);
       CHECK(reply.value == value);
     }
+  }
+  Frame apply(const params::Table& table) {
+    stage(table);
     return ask(wire::ParamApplyRequest{params::crc(table)});
   }
   void apply_ok(const params::Table& table) { REQUIRE(apply(table).type == 0x85); }

@@ -87,6 +87,49 @@ TEST_CASE("stop turns the drivers off before it is answered, in soft start and i
   CHECK_FALSE(board.drivers_when_sending);
 }
 
+TEST_CASE(
+    "what an integral holds goes on after a host's stop below 64 ms, in another set too, but in none without Ki") {
+  params::Table with = bench::unwatched();
+  with.soft_start_ms = 100;
+  with.joint[0].ki = 20UL << 16;
+  params::Table without = with;
+  without.joint[0].ki = 0;
+  Bench arm(with);
+  arm.set_leader(0, 0.1);
+  arm.run(30);
+  const auto change_to = [&arm](const params::Table& table) {
+    arm.stage(table);
+    arm.stop();
+    arm.get<wire::ParamApplyReply>(wire::ParamApplyRequest{params::crc(table)});
+  };
+  const auto duty_after = [&arm](unsigned ticks, std::uint16_t lease_ms = 0) {
+    arm.enable(lease_ms);
+    arm.run(ticks);
+    return board.duty[0];
+  };
+  const int fresh = duty_after(110);
+  arm.run(3000);
+  const int held = board.duty[0];
+  REQUIRE(held > 2 * fresh);
+
+  arm.stop();
+  arm.run(63);
+  CHECK(duty_after(110) >= held);
+  arm.stop();
+  arm.run(64);
+  CHECK(duty_after(110) == fresh);
+  arm.run(3000);
+  with.joint[0].ki /= 2;
+  change_to(with);
+  CHECK(duty_after(110) >= held);
+  change_to(without);
+  CHECK(duty_after(110) < fresh);
+  change_to(with);
+  duty_after(3000, 3000);  // the lease ends it
+  CHECK_FALSE(board.drivers);
+  CHECK(duty_after(110) <= fresh);
+}
+
 TEST_CASE("stop is answered in every other state too, and gets through while samples fill the wire") {
   Bench boot;
   boot.run(1);

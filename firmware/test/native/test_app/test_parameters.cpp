@@ -38,16 +38,16 @@ TEST_CASE("a set is staged piece by piece, runs once it is applied, and is gone 
 }
 
 TEST_CASE("a lower supply means more duty for the same voltage") {
-  Bench arm(bench::unwatched());
+  params::Table table = bench::unwatched();
+  table.joint[0].ki = 0;  // the integral would go on in between
+  Bench arm(table);
   arm.set_leader(0, 0.3);
   arm.run(30);
   arm.enable();
   arm.run(1100);
   const int at_15v = board.duty[0];
   arm.stop();
-  params::Table table = bench::unwatched();
   table.supply_mv = 12000;
-  table.joint[0].ki = 0;  // the integral would go on in between
   arm.apply_ok(table);
   arm.enable();
   arm.run(1100);

@@ -1,8 +1,8 @@
 """Changes the set that the board runs, while a person works with the arm.
 
-The firmware takes a set over only with the motors off, and it begins the integral anew. So a change needs a rest of the
-leader with a small error: all parameters are staged before, while the motors run; then the motors are off for some 20
-ms and come back within SOFT_START_MS. Friction holds the arm meanwhile.
+The firmware takes a set over only with the motors off. So a change needs a rest of the leader with a small error: all
+parameters are staged before, while the motors run; then the motors are off for some 20 ms and come back within
+SOFT_START_MS. Friction holds the arm meanwhile, and the integrals go on, as after every stop of less than 64 ms.
 """
 
 from __future__ import annotations
