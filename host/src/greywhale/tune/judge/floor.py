@@ -40,8 +40,9 @@ from greywhale.simulate import leader_slices, plant_row
 from greywhale.simulate.ideal import simulate_ideal
 from greywhale.simulate.leader import SLICE_S, SLICES_PER_TICK
 
-# A floor below this (rad^2) may be mere backlash (some mrad), unless the bound says that it is the supply.
-_BACKLASH = 1e-4
+# A floor below this (rad^2) may be mere backlash (some mrad), unless the bound says that it is the supply; one below a
+# millirad is nothing that a potentiometer could tell.
+_BACKLASH, _LEAST = 1e-4, 1e-6
 
 # The ideal law's open numbers: brake (share), settle (s), lead (share), pull (share); see host/native/ideal/law.h.
 # A finer search finds 0.1 % at most.
@@ -84,7 +85,7 @@ class Floor:
     def limited(self) -> tuple[bool, ...]:
         """For each joint, then for all: whether the supply keeps the error from zero."""
         each = [*zip(self.mse, self.bound, strict=True), (self.mse.sum(), self.bound.sum())]
-        return tuple(bool(floor >= _BACKLASH or 2.0 * bound >= floor > 0.0) for floor, bound in each)
+        return tuple(bool(floor >= _BACKLASH or 2.0 * bound >= floor >= _LEAST) for floor, bound in each)
 
     def multiple(self, mse: Floats) -> tuple[float | None, ...]:
         """Each joint's error as a multiple of the floor, then the total's; None where the supply does not limit it."""
