@@ -15,7 +15,7 @@ _SOURCES = [
     "firmware/lib/params/src/params/params.cpp",
     "firmware/lib/params/src/params/table.cpp",
 ]
-_INCLUDES = [*(f"firmware/lib/{room}/src" for room in ("codes", "link", "params")), "firmware/test/native/test_link"]
+_INCLUDES = [*(f"firmware/lib/{room}/src" for room in ("codes", "link", "params")), "firmware/test/native"]
 
 
 class Firmware:

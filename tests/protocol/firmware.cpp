@@ -1,8 +1,8 @@
 // The firmware's own link and params code behind a C interface, for the tests in this folder.
 #include <string.h>
 
-#include "golden.h"
 #include "link/frame.h"
+#include "messages.h"
 #include "params/params.h"
 
 namespace {
@@ -16,7 +16,7 @@ struct Reencode {
   int result;
 
   template <class Message>
-  void operator()(const char* candidate, int, const Message&, const golden::Bytes&, const golden::Bytes&) {
+  void operator()(const char* candidate, const Message&) {
     if (strcmp(name, candidate) != 0) return;
     Message message{};
     if (!Message::decode(in, size, message)) {
@@ -59,7 +59,7 @@ int gw_decode(const uint8_t* data, int size, uint8_t* out, uint16_t* bad) {
 // -2 when no message has the name, -1 when the length is refused, else the size.
 int gw_reencode(const char* name, const uint8_t* in, uint8_t size, uint8_t* out) {
   Reencode visit{name, in, size, out, -2};
-  golden::for_each<Reencode&>(visit);
+  wire::for_each_message<Reencode&>(visit);
   return visit.result;
 }
 

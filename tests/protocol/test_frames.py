@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from greywhale.base.errors import UserError
 from greywhale.protocol.frames import MAX_WIRE, Frame, FrameDecoder, decode_frame, encode_frame
 from greywhale.protocol.schema import MAX_PAYLOAD
+from tools.generate.link import golden
 
 if TYPE_CHECKING:
     from .conftest import Firmware
@@ -86,6 +87,16 @@ def test_both_sides_judge_any_stream_alike(firmware: Firmware, parts: list[bytes
     decoder = FrameDecoder()
     got = [tuple(frame) for frame in decoder.feed(stream)]
     assert (got, decoder.bad) == firmware.decode(stream)
+
+
+def test_a_frame_one_byte_too_long_is_refused_by_both_sides_though_its_crc_is_right(firmware: Firmware) -> None:
+    for size in (MAX_PAYLOAD, MAX_PAYLOAD + 1):
+        stream = golden.frame(1, 2, bytes([0x55]) * size)
+        assert len(FrameDecoder().feed(stream)) == len(firmware.decode(stream)[0]) == (size == MAX_PAYLOAD)
+
+
+def test_the_firmwares_count_of_bad_frames_stops_at_its_end(firmware: Firmware) -> None:
+    assert firmware.decode(b"\x05\0" * 70_000) == ([], 65_535)
 
 
 def test_an_endless_piece_is_counted_once_and_takes_no_memory() -> None:

@@ -16,7 +16,7 @@ GENERATED = [
     "firmware/lib/codes/src/codes/codes.h",
     "firmware/lib/params/src/params/table.h",
     "firmware/lib/params/src/params/table.cpp",
-    "firmware/test/native/test_link/golden.h",
+    "firmware/test/native/messages.h",
     "host/src/greywhale/protocol/schema.py",
     "host/web/src/link/schema.ts",
     "shared/link/golden.toml",

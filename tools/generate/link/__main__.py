@@ -1,8 +1,8 @@
 """Makes everything that is derived from shared/link/*.toml: `python -m tools.generate.link [--check]`.
 
 The declarations become a C++ header of messages, the firmware's parameter table, the host's Python module, the
-page's TypeScript module, the reference page and golden vectors for the tests of all sides. With --check nothing is
-written; stale files are named and the exit code is 1.
+page's TypeScript module, the reference page, and golden vectors and a list of messages for the tests. With --check
+nothing is written; stale files are named and the exit code is 1.
 Needs nothing but Python 3.11.
 """
 
@@ -24,7 +24,7 @@ def outputs(declaration: Declaration) -> dict[str, str]:
         "firmware/lib/link/src/link/schema.h": cpp_messages.header(declaration),
         "firmware/lib/params/src/params/table.h": cpp_parameters.header(declaration),
         "firmware/lib/params/src/params/table.cpp": cpp_parameters.source(declaration),
-        "firmware/test/native/test_link/golden.h": golden.header(declaration),
+        "firmware/test/native/messages.h": cpp_messages.visitor(declaration),
         "host/src/greywhale/protocol/schema.py": python_module.module(declaration),
         "host/web/src/link/schema.ts": typescript.module(declaration),
         "shared/link/golden.toml": golden.toml(declaration),

@@ -23,6 +23,21 @@ def header(declaration: Declaration) -> str:
     return "\n".join(parts) + "\n"
 
 
+def visitor(declaration: Declaration) -> str:
+    """Text of messages.h, with which the firmware's tests go through all messages."""
+    parts = [
+        f"// Every message of the serial link.\n// {NOTICE}\n#pragma once\n",
+        '#include "link/schema.h"\n',
+        "namespace wire {\n",
+        "// Calls visit(name, message) for each.",
+        "template <class Visit>\nvoid for_each_message(Visit visit) {",
+        *(f'  visit("{message.struct}", {message.struct}{{}});' for message in declaration.messages),
+        "}\n",
+        "}  // namespace wire",
+    ]
+    return "\n".join(parts) + "\n"
+
+
 def _constants(declaration: Declaration) -> str:
     lines = [
         f"constexpr uint8_t protocol = {declaration.protocol};",

@@ -1,7 +1,7 @@
-"""Golden vectors for both sides: every message with its payload and its whole frame, and the packed default parameters.
+"""Golden vectors for host and page: every message with its payload and whole frame, and the packed default parameters.
 
 Bytes are made here from the declarations by their own short definitions of little-endian, CRC and COBS, so that neither
-side's code is its own judge.
+side's code is its own judge. The firmware is compared with the host, in tests/protocol.
 """
 
 from __future__ import annotations
@@ -112,43 +112,3 @@ def _pairs(vector: Vector) -> list[str]:
         f"{field.name} = {values[field.name] if field.count else values[field.name][0]}"
         for field in vector.message.fields
     ]
-
-
-def header(declaration: Declaration) -> str:
-    """Text of golden.h: the same vectors for the firmware's native tests."""
-    table = default_table(declaration)
-    longest = max(len(vector.wire) for vector in vectors(declaration))
-    lines = [
-        f"// Golden vectors of the link.\n// {NOTICE}\n#pragma once\n",
-        '#include <stddef.h>\n#include <stdint.h>\n\n#include "link/schema.h"\n',
-        "namespace golden {\n",
-        f"constexpr uint16_t default_crc = 0x{crc16(table):04X};\n",
-        f"constexpr int vector_count = {len(vectors(declaration))};\n",
-        f"struct Bytes {{\n  size_t size;\n  uint8_t data[{longest}];\n}};\n",
-        "// Calls visit(name, seq, message, payload, wire) for every vector.",
-        "template <class Visit>\nvoid for_each(Visit visit) {",
-        *(_visit(vector) for vector in vectors(declaration)),
-    ]
-    return "\n".join([*lines, "}\n", "}  // namespace golden"]) + "\n"
-
-
-def _bytes(data: bytes) -> str:
-    return "{" + ", ".join(f"0x{byte:02X}" for byte in data) + "}"
-
-
-def _literal(field: Field, value: int) -> str:
-    if field.enum:
-        return f"static_cast<wire::{field.enum}>({value})"
-    if value == -(1 << 31):
-        return "INT32_MIN"
-    return f"{value}u" if field.kind == "u32" else str(value)
-
-
-def _visit(vector: Vector) -> str:
-    fields = []
-    for field in vector.message.fields:
-        values = ", ".join(_literal(field, value) for value in vector.values[field.name])
-        fields.append(f"{{{values}}}" if field.count else values)
-    message = f"wire::{vector.message.struct}{{{', '.join(fields)}}}"
-    payload, wire = (f"Bytes{{{len(data)}, {_bytes(data)}}}" for data in (vector.payload, vector.wire))
-    return f'  visit("{vector.message.struct}", {vector.seq}, {message}, {payload}, {wire});'

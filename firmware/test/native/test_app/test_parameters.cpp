@@ -99,13 +99,15 @@ TEST_CASE("apply is refused for another CRC, for contradictions and for a set th
   table.joint[1].limit_min = 2000;
   table.joint[1].limit_max = 2000;
   CHECK(arm.apply(table).type == 0xff);
-  CHECK(arm.refused(wire::ParamApplyRequest{params::crc(table)}).code == wire::NackCode::inconsistent);
+  wire::Nack nack = arm.refused(wire::ParamApplyRequest{params::crc(table)});
+  CHECK(nack.code == wire::NackCode::inconsistent);
+  CHECK(nack.detail == params::first_inconsistent(table));
 
   table = bench::defaults();
   table.joint[3].ze_c = 10;  // narrower than 0.01
   table.supply_mv = 9000;
   CHECK(arm.apply(table).type == 0xff);
-  const wire::Nack nack = arm.refused(wire::ParamApplyRequest{params::crc(table)});
+  nack = arm.refused(wire::ParamApplyRequest{params::crc(table)});
   CHECK(nack.code == wire::NackCode::set_refused);
   CHECK(nack.detail == (3 << 8 | static_cast<int>(wire::Refusal::width)));
   CHECK(value_of(arm, 1) == 15000);  // nothing of it runs

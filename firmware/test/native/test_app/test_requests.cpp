@@ -8,7 +8,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "../test_link/golden.h"
+#include "../messages.h"
 #include "bench.h"
 
 using bench::Bench;
@@ -20,7 +20,7 @@ namespace {
 // Type -> length of every request that shared/link declares.
 std::map<std::uint8_t, std::size_t> declared() {
   std::map<std::uint8_t, std::size_t> requests;
-  golden::for_each([&](const std::string& name, unsigned, const auto& message, auto...) {
+  wire::for_each_message([&](const std::string& name, const auto& message) {
     using Message = std::decay_t<decltype(message)>;
     const std::string ending = "Request";
     if (name.size() < ending.size() || name.substr(name.size() - ending.size()) != ending) return;

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "../test_link/expect.h"
+#include "expect.h"
 #include "fake_eeprom.h"
 #include "params/store.h"
 

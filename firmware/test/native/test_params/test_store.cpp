@@ -5,7 +5,7 @@
 
 #include <random>
 
-#include "../test_link/expect.h"
+#include "expect.h"
 #include "fake_eeprom.h"
 #include "params/store.h"
 
