@@ -57,11 +57,3 @@ TEST_CASE("the watchdog is fed by finished ticks and by nothing else") {
   for (int i = 0; i < 100; ++i) arm.service();
   CHECK(board.watchdog_kicks == before + 50);
 }
-
-TEST_CASE("a tick marks itself finished") {
-  Bench arm;
-  hal::fake::start_tick();
-  CHECK(hal::tick_pending());
-  arm.tick();
-  CHECK_FALSE(hal::tick_pending());
-}

@@ -49,23 +49,6 @@ TEST_CASE("two joints follow while the inputs of the other two are open, whateve
   CHECK(std::abs(arm.follower(1) + 0.2 * std::sin(4)) < 0.1);
 }
 
-TEST_CASE("a joint that is not there stays at angle 0 in every sample") {
-  Bench arm(two_joints());
-  (void)arm.ask(wire::TelemetryRequest{1});
-  arm.samples.clear();
-  for (unsigned i = 0; i < 100; ++i) {
-    stir(arm, i);
-    arm.tick();
-  }
-  REQUIRE(arm.samples.size() > 50);
-  for (const auto& sample : arm.samples) {
-    for (int joint = 2; joint < 4; ++joint) {
-      CHECK(sample.leader[joint] == 0);
-      CHECK(sample.follower[joint] == 0);
-    }
-  }
-}
-
 TEST_CASE("a joint whose follower alone has no pot is not in use, whatever its leader and its limits are") {
   params::Table table = two_joints();
   table.leader[2].scale = 10734;

@@ -1,8 +1,6 @@
 // The host leads: where the reference goes, what is refused, and that the leader arm has it back afterwards.
 #include "bench.h"
 
-#include <fuzzy_pdi.h>
-
 using bench::Bench;
 using bench::board;
 
@@ -104,50 +102,6 @@ TEST_CASE("the reference is the B-spline of the points to the last bit, and rest
   CHECK(wrong == 0);
   CHECK(wanted.size() > 900);
   for (std::size_t i = first + wanted.size(); i < seen.size(); ++i) CHECK(seen[i] == control.back());
-}
-
-TEST_CASE("samples tell the error and voltage of one and the same tick, whoever leads") {
-  for (const bool led : {false, true}) {
-    CAPTURE(led);
-    Led arm;
-    arm.speed = 3.0;
-    arm.boot();
-    arm.sampling();
-    std::uint8_t next = 0;
-    if (led) next = arm.lead().next;
-    else arm.enable();
-    arm.samples.clear();
-    arm.run(1100);  // past the soft start
-    double angle = 0.0;
-    for (int k = 0; k < 60; ++k) {
-      const int step = static_cast<int>(std::lround(60.0 * std::sin(k * 0.21)));
-      if (led) next = arm.send(next, step).next;
-      for (int i = 0; i < piece; ++i) {
-        angle += step / 1024.0 / piece;
-        if (!led) arm.set_leader(0, angle);
-        arm.tick();
-      }
-    }
-    fuzzy_pdi::Joint law{};
-    params::Table table = bench::defaults();
-    const auto& p = table.joint[0];
-    const uint8_t ce_ticks = table.change[0].ce_ticks;
-    const fuzzy_pdi::Settings settings = {p.ne_c,  p.ze_a, p.ze_c, p.pe_b, p.nce_c, p.zce_a, p.zce_c,
-                                          p.pce_b, p.kp,   p.kd,   p.ki,   p.ku_mv, ce_ticks};
-    REQUIRE(fuzzy_pdi::compile(settings, table.period_ms, law.coefficients) == fuzzy_pdi::Refusal::none);
-    fuzzy_pdi::reset(law.coefficients, law.state);
-    int moved = 0, wrong = 0;
-    for (const wire::Sample& sample : arm.samples) {
-      if (sample.state != wire::State::following && sample.state != wire::State::soft_start) continue;
-      const auto error = static_cast<std::int16_t>(sample.leader[0] - sample.follower[0]);
-      const fuzzy_pdi::Output out = fuzzy_pdi::step_error(law, error, 15000);
-      if (sample.state != wire::State::following) continue;
-      moved += sample.voltage[0] != 0;
-      wrong += out.volts_mv != sample.voltage[0];
-    }
-    CHECK(moved > 700);
-    CHECK(wrong == 0);
-  }
 }
 
 TEST_CASE("while the host leads its lease cannot be taken away, and the leader arm cannot take over") {

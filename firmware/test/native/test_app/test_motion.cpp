@@ -8,21 +8,6 @@ using bench::board;
 using bench::Booted;
 using bench::Following;
 
-TEST_CASE("enable is refused while leader and follower differ too much, and names the joint") {
-  Bench arm;
-  arm.set_leader(2, 0.9);
-  arm.boot();
-  const wire::Nack nack = arm.refused(wire::EnableRequest{0});
-  CHECK(nack.code == wire::NackCode::error_too_large);
-  CHECK((nack.detail >> 8) == 2);
-  CHECK((nack.detail & 0xff) / 32.0 == doctest::Approx(0.9).epsilon(0.05));
-  arm.run(5);
-  CHECK_FALSE(board.drivers);
-  arm.set_leader(2, 0.75);
-  arm.run(30);
-  CHECK(arm.enable() == wire::State::soft_start);
-}
-
 TEST_CASE("soft start: the duty stays below the ramp, and the ramp reaches the top") {
   Bench arm;
   for (std::uint8_t i = 0; i < 4; ++i) arm.set_leader(i, 0.79);  // as far as enable allows: more volts than the ramp
@@ -54,18 +39,6 @@ TEST_CASE("a motor that turns the other way is set right by motor_sign") {
   arm.run(200);
   CHECK(board.duty[0] > 20);
   CHECK(board.duty[1] < -20);
-}
-
-TEST_CASE("a leader beyond the joint's limits is followed to the limit only") {
-  params::Table table = bench::defaults();
-  table.joint[0].limit_max = 1024;  // 0.25 rad
-  Bench arm(table);
-  arm.speed = 3.0;
-  arm.set_leader(0, 2.0);  // 2 rad away from the follower, but the reference is not
-  arm.run(30);
-  REQUIRE(arm.enable() == wire::State::soft_start);
-  arm.run(6000);
-  CHECK(arm.follower(0) == doctest::Approx(0.25).epsilon(0.05));
 }
 
 TEST_CASE("stop turns the drivers off before it is answered, in soft start and in following") {
@@ -275,19 +248,4 @@ TEST_CASE("while the motors are on, a reading at a rail is not taken; while they
   arm.set_count(6, 0);
   arm.run(30);
   CHECK(arm.samples.back().follower[2] < -10000);
-}
-
-TEST_CASE("with rail_counts 0 a reading at a rail is a reading like any other") {
-  params::Table table = bench::unwatched();
-  table.rail_counts = 0;
-  Bench arm(table);
-  arm.set_count(1, 0);
-  arm.set_count(5, 3);
-  arm.run(40);
-  REQUIRE(arm.enable() == wire::State::soft_start);
-  arm.get<wire::TelemetryReply>(wire::TelemetryRequest{1});
-  arm.run(30);
-  CHECK(board.drivers);
-  CHECK(arm.samples.back().leader[1] < -10000);
-  CHECK(arm.samples.back().follower[1] < -10000);
 }

@@ -37,23 +37,6 @@ TEST_CASE("a set is staged piece by piece, runs once it is applied, and is gone 
   CHECK(value_of(arm, 1) == 15000);
 }
 
-TEST_CASE("a lower supply means more duty for the same voltage") {
-  params::Table table = bench::unwatched();
-  table.joint[0].ki = 0;  // the integral would go on in between
-  Bench arm(table);
-  arm.set_leader(0, 0.3);
-  arm.run(30);
-  arm.enable();
-  arm.run(1100);
-  const int at_15v = board.duty[0];
-  arm.stop();
-  table.supply_mv = 12000;
-  arm.apply_ok(table);
-  arm.enable();
-  arm.run(1100);
-  CHECK(board.duty[0] / double(at_15v) == doctest::Approx(1.25).epsilon(0.03));
-}
-
 TEST_CASE("apply is refused while the motors are on, and the running set stays") {
   Following arm;
   arm.get<wire::ParamSetReply>(wire::ParamSetRequest{1, 12000});  // staging is harmless
@@ -200,42 +183,6 @@ TEST_CASE("a saved set survives a power cycle; ticks go on and motors may run me
   const auto hello = arm.get<wire::HelloReply>(wire::HelloRequest{});
   CHECK(hello.param_source != wire::ParamSource::defaults);
   CHECK(hello.param_crc == params::crc(changed()));
-}
-
-TEST_CASE("a lost set is a fault until the host has confirmed another; a save makes it good for the next reset") {
-  Booted arm;
-  params::Table newest = changed();
-  for (const std::int8_t sign : {std::int8_t{1}, std::int8_t{-1}}) {  // one set into each bank
-    newest.joint[1].motor_sign = sign;
-    arm.apply_ok(newest);
-    arm.get<wire::ParamSaveReply>(wire::ParamSaveRequest{});
-    arm.run(1500);
-    REQUIRE(arm.status().save_state == wire::SaveState::saved);
-  }
-  board.eeprom[params::bank::start_b + 30] ^= 1;
-
-  arm.power_on();
-  arm.boot();
-  CHECK(arm.get<wire::HelloReply>(wire::HelloRequest{}).param_source ==
-        wire::ParamSource::bank_a);  // another motor_sign
-  CHECK(arm.status().fault == wire::Fault::params);
-  CHECK(arm.refused(wire::EnableRequest{0}).code == wire::NackCode::in_fault);
-  CHECK(arm.refused(wire::ClearFaultRequest{}).code == wire::NackCode::set_lost);
-  arm.apply_ok(newest);
-  CHECK(arm.clear_fault() == wire::State::disabled);
-  CHECK(arm.enable() == wire::State::soft_start);
-
-  arm.power_on();  // without a save
-  arm.boot();
-  CHECK(arm.status().fault == wire::Fault::params);
-  arm.apply_ok(newest);
-  arm.get<wire::ParamSaveReply>(wire::ParamSaveRequest{});
-  arm.run(3000);
-  CHECK(arm.status().save_state == wire::SaveState::saved);
-  arm.power_on();
-  arm.boot();
-  CHECK(arm.status().fault == wire::Fault::none);
-  CHECK(value_of(arm, 1) == 12000);
 }
 
 TEST_CASE("a stored set that cannot run: defaults, a fault, and a way out") {

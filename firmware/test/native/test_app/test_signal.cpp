@@ -5,48 +5,12 @@
 
 namespace {
 
-// The definition: ((count14 - zero) * scale + 4096) >> 13
-int angle_of(int sum, int zero, int scale) {
-  const long long product = static_cast<long long>(sum * 4 - zero) * scale + 4096;
-  return static_cast<int>(product >= 0 ? product / 8192 : -((-product + 8191) / 8192));
-}
-
 void tick(app::Sampling& sampling, const std::uint16_t* sums, supervisor::Observation& seen) {
   sampling.tick(sums, seen);
   sampling.prepare_low_passes();
 }
 
 }  // namespace
-
-TEST_CASE("the filter reaches a step from both sides, never overshoots, and its first sample is taken whole") {
-  for (std::uint8_t shift = 0; shift <= 4; ++shift) {
-    for (const int from : {0, 1000, 4092}) {
-      for (const int to : {0, 997, 4092}) {
-        params::Table table = bench::defaults();
-        table.filter_shift = shift;
-        app::Sampling sampling;
-        supervisor::Observation seen = {};
-        sampling.configure(table);
-        std::uint16_t sums[8];
-        std::fill(sums, sums + 8, static_cast<std::uint16_t>(from));
-        tick(sampling, sums, seen);
-        CHECK(sampling.leader(0) == angle_of(from, 8184, 10734));
-        std::fill(sums, sums + 8, static_cast<std::uint16_t>(to));
-        const int goal = angle_of(to, 8184, 10734);
-        int before = std::abs(sampling.leader(0) - goal), worse = 0;
-        for (int i = 0; i < 300; ++i) {
-          tick(sampling, sums, seen);
-          const int now = sampling.leader(0) - goal;
-          if ((from < to) ? now > 0 : now < 0) ++worse;
-          if (std::abs(now) > before) ++worse;
-          before = std::abs(now);
-        }
-        CHECK(worse == 0);
-        CHECK(before <= 3);  // half of the filter's smallest step, 8/64 of a 10-bit count
-      }
-    }
-  }
-}
 
 TEST_CASE("an error is that from the follower to the leader within its joint's limits, and a distance is its size") {
   params::Table table = bench::defaults();
