@@ -1,4 +1,4 @@
-"""The frame of the attacks: rows add up, pieces cover the trials, a part is a study, and the page shows all of it."""
+"""The frame of the attacks: a part is a study whose pieces add up, and the page shows all of it."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from greywhale.protocol.schema import Fault
 from tools.attack import parts
 from tools.attack.arm_faults import faults
 from tools.attack.page import INJECTED_AS, write_page
-from tools.attack.part import Part, Piece, Row, add_up, split
-from tools.attack.run import Result, attack, digest
+from tools.attack.part import Part, Piece, Row, split
+from tools.attack.run import Result, attack
 
 
 def double(piece: Piece) -> list[Row]:
@@ -23,24 +23,6 @@ def double(piece: Piece) -> list[Row]:
 
 def make_part() -> Part:
     return Part("eeprom", "Nothing at all", "Nothing.", ("Makefile",), lambda share: split(10, share, 4), double)
-
-
-def test_rows_of_one_name_add_up() -> None:
-    first = Row("a", 2, 1, {"x": 1}, {"ms": 3.0})
-    second = Row("a", 3, 0, {"x": 2, "y": 5}, {"ms": 2.0, "rad": 0.1})
-    other = Row("b", 1, 0)
-    assert add_up([first, other, second]) == [Row("a", 5, 1, {"x": 3, "y": 5}, {"ms": 3.0, "rad": 0.1}), other]
-
-
-def test_pieces_cover_the_share_and_differ_in_their_seeds() -> None:
-    assert [piece["trials"] for piece in split(10, 1.0, 4)] == [4, 4, 2]
-    assert len({piece["seed"] for piece in split(10, 1.0, 4)}) == 3
-    assert split(10, 0.001, 4, board="mega") == [{"board": "mega", "seed": 0, "trials": 1}]
-
-
-def test_the_digest_follows_what_a_part_depends_on() -> None:
-    here = make_part()
-    assert digest(here) == digest(make_part()) != digest(replace(here, depends=("README.md",)))
 
 
 def test_the_page_shows_every_violation() -> None:
@@ -72,7 +54,7 @@ def test_the_page_lists_the_faults_with_their_times_on_both_boards() -> None:
 def test_a_share_is_done_once_and_kept_until_the_code_changes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     part = make_part()
     monkeypatch.setattr(parts, "PARTS", (part,))
-    result = attack(part, 1.0, 1, tmp_path)
+    result = attack(part, 1.0, 1, tmp_path)  # in pieces of 4, 4 and 2 trials
     assert result.rows == [Row("doubled", 10, 0, {"sum": 20}, {"most": 4.0})]
     monkeypatch.setattr(parts, "PARTS", ())
     assert attack(part, 1.0, 1, tmp_path) == result, "nothing is left to do"
