@@ -46,10 +46,13 @@ class Scenario:
 
 @dataclass(frozen=True)
 class Run:
-    """Outputs at the end of each tick, of a Nano OCR1A, OCR1B, OCR2A, OCR2B, PORTB, PORTD; all bytes that it sent."""
+    """Outputs at the end of each tick, of a Nano OCR1A, OCR1B, OCR2A, OCR2B, PORTB, PORTD; all bytes that it sent; its
+    EEPROM at the end, of a board with cycles.
+    """
 
     outputs: NDArray[Any]
     sent: bytes
+    eeprom: bytes = b""
 
 
 def request(message: type[Message], sequence: int, payload: bytes = b"") -> bytes:
@@ -67,7 +70,8 @@ def run_avr8js(scenario: Scenario, folder: Path) -> Run:
     volts.write_bytes(scenario.volts.astype("<f4").tobytes())
     command = ["node", str(SCRIPTS / "lockstep.js"), str(IMAGE), str(sends), str(volts), str(len(scenario.volts))]
     output = json.loads(subprocess.run(command, env=NODE, check=True, capture_output=True, text=True).stdout)
-    return Run(np.array(output["outputs"][: len(scenario.volts)]), bytes.fromhex(output["sent"]))
+    outputs = np.array(output["outputs"][: len(scenario.volts)])
+    return Run(outputs, bytes.fromhex(output["sent"]), bytes.fromhex(output["eeprom"]))
 
 
 def run_board(scenario: Scenario) -> Run:
@@ -102,7 +106,7 @@ def run_image(board: Any, tick_vector: int, scenario: Scenario, look: Callable[[
         board.run_until(start + PERIOD - 200)
         outputs.append(look())
         sent += board.uart_receive()
-    return Run(np.array(outputs), sent)
+    return Run(np.array(outputs), sent, board.eeprom())
 
 
 def parameter_requests(values: dict[str, int], sequence: int) -> list[bytes]:

@@ -1,18 +1,14 @@
-"""Another simulator of the ATmega328P runs our image: the same duties, to the tick, and our host at its serial port."""
+"""Another simulator of the ATmega328P runs our image: the same duties, to the tick, and the same EEPROM."""
 
 from __future__ import annotations
 
 import json
 import struct
 import subprocess
-import sys
-from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
 
-from greywhale.files.log import read_log
 from greywhale.protocol import frames, schema
 from greywhale.protocol.frames import Frame
 from tests.oracles.second_simulator import (
@@ -20,7 +16,6 @@ from tests.oracles.second_simulator import (
     CONVERSIONS,
     IMAGE,
     NODE,
-    ROOT,
     SCRIPTS,
     Run,
     Scenario,
@@ -30,9 +25,7 @@ from tests.oracles.second_simulator import (
     run_avr8js,
     run_board,
 )
-from tests.oracles.served_nano import ServedNano
 
-CONTROLLER = ROOT / "shared/fuzzy_tables/table_10.toml"  # the paper's, tuned
 TICKS = 4000
 # The followers of this scenario move without their motors.
 UNWATCHED = {"speed_limit": 0, "runaway_limit": 0, "stall_volts": 0, "unrest_amplitude": 0}
@@ -44,6 +37,8 @@ NEW_SET = UNWATCHED | {
     "joint3.motor_sign": -1,
     "tracking_ms": 40,
 }
+RUNNING = [NEW_SET.get(parameter.name, parameter.default) for parameter in schema.PARAMETERS]
+BANK_A, MAGIC = 16, b"GW"
 COUNT = 5 / 1024  # volts
 APPLYING = (range(50, 100), range(1540, 1620))  # ticks, until the filter of a new set has settled
 
@@ -76,6 +71,7 @@ def all_requests() -> dict[int, bytes]:
         40: request(schema.TelemetryRequest, 1, struct.pack("<H", 1)),
         120: enable,
         1500: request(schema.StopRequest, 3),
+        1630: request(schema.ParamSaveRequest, 6),
         1700: enable,
         2700: request(schema.ClearFaultRequest, 4),
         2720: enable,
@@ -118,6 +114,14 @@ def test_both_simulators_send_the_same_replies_and_samples(runs: tuple[Run, Run]
     assert len(samples.keys() ^ our_samples.keys()) <= 10
 
 
+def test_both_simulators_store_the_same_set(runs: tuple[Run, Run]) -> None:
+    theirs, ours = runs
+    bank, _, written = ours.eeprom[BANK_A:].partition(schema.TABLE.pack(RUNNING))
+    assert bank[:2] == MAGIC
+    assert written
+    assert theirs.eeprom == ours.eeprom
+
+
 def test_the_scenario_shows_what_it_is_for(runs: tuple[Run, Run]) -> None:
     """Motors on three times, four duties that differ all the time, both directions, two faults."""
     _, ours = runs
@@ -142,33 +146,6 @@ def test_the_watchdog_of_the_other_simulator_ends_a_hang() -> None:
     hello = schema.HelloReply.unpack(frame.payload)
     assert isinstance(hello, schema.HelloReply)
     assert hello.reset_cause == schema.ResetCause.WATCHDOG
-
-
-def _greywhale(verb: str, port: str, *arguments: str) -> dict[str, Any]:
-    command = [sys.executable, "-m", "greywhale", *verb.split(), "--port", port, "--json", *arguments]
-    run = subprocess.run(command, capture_output=True, text=True, timeout=50, check=False)
-    assert run.returncode == 0, run.stdout + run.stderr
-    answer: dict[str, Any] = json.loads(run.stdout)
-    return answer
-
-
-def test_our_host_uploads_follows_and_records_on_the_other_simulator(tmp_path: Path) -> None:
-    log = tmp_path / "log.csv"
-    with ServedNano() as nano:
-        before = _greywhale("info", nano.path)
-        uploaded = _greywhale("upload", nano.path, str(CONTROLLER))
-        recorded = _greywhale("record", nano.path, "--enable", "--seconds", "3", "--out", str(log))
-        after = _greywhale("info", nano.path)
-    assert (before["board"], before["reset_cause"], before["parameter_source"]) == ("nano328", "external", "defaults")
-    assert uploaded["parameter_crc"] == after["parameter_crc"] != before["parameter_crc"]
-    assert after["parameter_source"] == "bank_a"  # it came through a reset in the EEPROM
-    assert (recorded["samples"], recorded["dropped"]) == (3000, 0)
-    samples = read_log(log)
-    assert samples.complete
-    assert np.allclose(np.diff(samples.time), 1e-3)
-    assert set(samples.state) == {"following"}
-    assert np.ptp(samples.follower, axis=0).min() > 0.4
-    assert np.abs(samples.leader - samples.follower).max() < 0.3  # half of the way that leaders swing
 
 
 def test_the_pins_carry_the_duties_of_the_compare_registers() -> None:

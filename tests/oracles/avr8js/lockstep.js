@@ -37,5 +37,5 @@ nano.onTick = () => {
 };
 
 while (outputs.length < Number(count)) nano.runUntil(cpu.cycles + 4000);
-const conversions = nano.adc.conversions;
-process.stdout.write(JSON.stringify({ outputs, sent: Buffer.from(sent).toString("hex"), conversions }));
+const hex = (data) => Buffer.from(data).toString("hex");
+process.stdout.write(JSON.stringify({ outputs, sent: hex(sent), eeprom: hex(nano.eepromBytes.memory) }));

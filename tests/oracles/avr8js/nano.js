@@ -10,7 +10,7 @@ const RAM_BYTES = 2048;
 const TICK_VECTOR = 14 * 2; // TIMER0_COMPA, a word address
 const ADEN = 0x80, ADSC = 0x40, ADATE = 0x20, ADIF = 0x10, ADTS = 0x07;
 const RXEN = 0x10, RXC = 0x80;
-const MCUSR = 0x54, PORF = 0x01, EXTRF = 0x02;
+const MCUSR = 0x54, PORF = 0x01;
 const FIRST_REGISTER = 0x20, REGISTERS = 0xe0;
 
 /** Adds free-running conversion, the end of a conversion by ADEN = 0, and clearing ADIF by writing one to it. */
@@ -20,7 +20,6 @@ class FreeRunningAdc extends avr.AVRADC {
     const { ADCSRA } = this.config;
     const start = cpu.writeHooks[ADCSRA];
     this.pending = null;
-    this.conversions = 0;
     this.voltage = () => 0; // of a channel, at the start of its conversion
     cpu.writeHooks[ADCSRA] = (value, old) => {
       if (value & ADIF) cpu.clearInterrupt(this.ADC);
@@ -45,7 +44,6 @@ class FreeRunningAdc extends avr.AVRADC {
   }
 
   complete(result, end) {
-    this.conversions += 1;
     this.completeADCRead(Math.min(Math.max(result, 0), 1023));
     const { ADCSRA, ADCSRB, ADMUX } = this.config;
     const { data } = this.cpu;
@@ -119,13 +117,6 @@ class Nano {
     this.usart.reset();
     for (const timer of this.timers) timer.reset();
     this.resets += 1;
-  }
-
-  /** The RESET pin: what opening the serial port does to an Arduino. */
-  externalReset() {
-    this.watchdog.enabledValue = this.watchdog.scheduled = false;
-    this.cpu.reset();
-    this.cpu.data[MCUSR] |= EXTRF;
   }
 
   /** Runs to the first instruction boundary at or after this cycle; calls onTick() at each tick's interrupt. */
