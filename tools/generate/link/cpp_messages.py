@@ -60,7 +60,7 @@ def _struct(message: Message) -> str:
         f"  static constexpr uint8_t type = 0x{message.type:02X};",
         f"  static constexpr uint8_t size = {message.size};",
         *([""] if message.fields else []),
-        *(f"  {_member(field)}  // {_comment(field)}" for field in message.fields),
+        *(f"  {_member(field)}  // {field.meaning}" for field in message.fields),
         "",
         *_encode(message),
         "",
@@ -73,11 +73,6 @@ def _struct(message: Message) -> str:
 def _member(field: Field) -> str:
     kind = field.enum or C_TYPES[field.kind]
     return f"{kind} {field.name}{f'[{field.count}]' if field.count else ''};"
-
-
-def _comment(field: Field) -> str:
-    unit = f" [{f'{field.lsb} ' if field.lsb else ''}{field.unit}]" if field.unit else ""
-    return field.description + unit
 
 
 def _places(message: Message) -> list[tuple[Field, str, int]]:

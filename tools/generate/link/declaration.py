@@ -36,6 +36,12 @@ class EnumValue:
     detail: str
     cause: str = ""
 
+    @property
+    def texts(self) -> list[str]:
+        """Description, remedy and detail, without those at the end that are empty."""
+        count = 3 if self.detail else 2 if self.remedy else 1
+        return [self.description, self.remedy, self.detail][:count]
+
 
 @dataclass(frozen=True)
 class Enum:
@@ -57,6 +63,12 @@ class Field:
     @property
     def size(self) -> int:
         return WIDTHS[self.kind] * (self.count or 1)
+
+    @property
+    def meaning(self) -> str:
+        """The description with the unit."""
+        lsb = f"{self.lsb} " if self.lsb else ""
+        return f"{self.description} [{lsb}{self.unit}]" if self.unit else self.description
 
 
 @dataclass(frozen=True)

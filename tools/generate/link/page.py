@@ -48,9 +48,8 @@ def _type(field: Field) -> str:
 
 
 def _meaning(field: Field) -> str:
-    unit = f" [{f'{field.lsb} ' if field.lsb else ''}{field.unit}]" if field.unit else ""
     enum = f" ([{field.enum}](#{field.enum.lower()}))" if field.enum else ""
-    return field.description + unit + enum
+    return field.meaning + enum
 
 
 def _messages(declaration: Declaration) -> list[str]:

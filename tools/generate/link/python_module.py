@@ -46,10 +46,7 @@ def _text(text: str) -> str:
 def _enum(enum: Enum) -> str:
     lines = [f"class {enum.name}(Described):", f'    """{enum.description}"""', ""]
     for value in enum.values:
-        texts = [value.description, value.remedy, value.detail]
-        while not texts[-1]:
-            texts.pop()
-        lines.append(f"    {value.name.upper()} = {value.value}, {', '.join(_text(text) for text in texts)}")
+        lines.append(f"    {value.name.upper()} = {value.value}, {', '.join(map(_text, value.texts))}")
     return "\n".join(lines)
 
 
@@ -80,8 +77,7 @@ def _message(message: Message, declaration: Declaration) -> str:
         "",
     ]
     for field in message.fields:
-        unit = f" [{f'{field.lsb} ' if field.lsb else ''}{field.unit}]" if field.unit else ""
-        lines.append(f"    {field.name}: {_hint(field)}  # {field.description}{unit}")
+        lines.append(f"    {field.name}: {_hint(field)}  # {field.meaning}")
     if message.fields:
         lines.append("")
     lines += _pack(message, private)

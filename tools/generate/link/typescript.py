@@ -31,17 +31,13 @@ def _text(text: str) -> str:
 def _enum(enum: Enum) -> str:
     lines = [f"/** {enum.description} */", f"export const {enum.name} = new Enumeration({_text(enum.name)}, {{"]
     for value in enum.values:
-        texts = [value.description, value.remedy, value.detail]
-        while not texts[-1]:
-            texts.pop()
-        lines.append(f"  {value.name}: [{value.value}, {', '.join(_text(text) for text in texts)}],")
+        lines.append(f"  {value.name}: [{value.value}, {', '.join(map(_text, value.texts))}],")
     return "\n".join([*lines, "});"]) + "\n"
 
 
 def _comment(field: Field) -> str:
-    unit = f" [{f'{field.lsb} ' if field.lsb else ''}{field.unit}]" if field.unit else ""
     enum = f" ({field.enum})" if field.enum else ""
-    return f"{field.description}{unit}{enum}"
+    return field.meaning + enum
 
 
 def _message(message: Message) -> str:
