@@ -7,6 +7,7 @@
 
 #include "machine.h"
 #include "must.h"
+#include "sets.h"
 #include "watcher.h"
 
 namespace attack {
@@ -40,16 +41,10 @@ wire::ParamSetRequest choose_value(Input& in) {
   wire::ParamSetRequest request = {static_cast<std::uint16_t>(in.u8() % (params::count + 1)), 0};
   const bool within = in.u8() % 8 != 0;
   request.value = in.i32();
-  std::uint16_t left = request.index;
-  for (const params::Group& group : params::groups) {
-    const auto all = static_cast<std::uint16_t>(group.elements * group.fields);
-    if (left < all && within) {
-      const params::Field& field = params::fields[group.first_field + left % group.fields];
-      const std::int64_t span = std::int64_t{field.maximum} - field.minimum + 1;
-      request.value = static_cast<std::int32_t>(field.minimum + static_cast<std::uint32_t>(request.value) % span);
-    }
-    if (left < all) break;
-    left = static_cast<std::uint16_t>(left - all);
+  if (within && request.index < params::count) {
+    const params::Field& field = field_of(request.index);
+    const std::int64_t span = std::int64_t{field.maximum} - field.minimum + 1;
+    request.value = static_cast<std::int32_t>(field.minimum + static_cast<std::uint32_t>(request.value) % span);
   }
   return request;
 }

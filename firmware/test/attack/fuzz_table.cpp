@@ -19,16 +19,6 @@ namespace {
 
 constexpr std::uint16_t limit_mv = 15000;
 
-const params::Field& field_of(std::uint16_t index) {
-  for (const params::Group& group : params::groups) {
-    const auto all = static_cast<std::uint16_t>(group.elements * group.fields);
-    if (index < all) return params::fields[group.first_field + index % group.fields];
-    index = static_cast<std::uint16_t>(index - all);
-  }
-  must(false, "every index has a field");
-  return params::fields[0];
-}
-
 // A value of 2^31 and more reads as a negative one.
 bool in_range(std::uint16_t index, std::int32_t value) {
   const params::Field& field = field_of(index);

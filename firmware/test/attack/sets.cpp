@@ -27,17 +27,9 @@ void mend(Random& random, params::JointParameters& joint, std::uint8_t period_ms
 }  // namespace
 
 std::int32_t random_value(Random& random, std::uint16_t index) {
-  for (const params::Group& group : params::groups) {
-    const auto all = static_cast<std::uint16_t>(group.elements * group.fields);
-    if (index >= all) {
-      index = static_cast<std::uint16_t>(index - all);
-      continue;
-    }
-    const params::Field& field = params::fields[group.first_field + index % group.fields];
-    const std::int64_t value = between(random, field.minimum, field.maximum);
-    return static_cast<std::int32_t>(value == 0 && field.nonzero ? 1 : value);
-  }
-  return 0;
+  const params::Field& field = field_of(index);
+  const std::int64_t value = between(random, field.minimum, field.maximum);
+  return static_cast<std::int32_t>(value == 0 && field.nonzero ? 1 : value);
 }
 
 params::Table random_set(Random& random) {

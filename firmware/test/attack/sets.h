@@ -1,4 +1,4 @@
-// Parameter sets: whether two are the same, and random ones that the controllers can run.
+// Parameter sets: whether two are the same, what a value may be, and random ones that the controllers can run.
 #pragma once
 #include <params/params.h>
 
@@ -14,6 +14,15 @@ inline std::int64_t between(Random& random, std::int64_t least, std::int64_t mos
 }
 
 inline bool same(const params::Table& a, const params::Table& b) { return std::memcmp(&a, &b, sizeof a) == 0; }
+
+// The description of a parameter of the table.
+inline const params::Field& field_of(std::uint16_t index) {
+  const params::Group* group = params::groups;
+  for (; index >= group->elements * group->fields; ++group) {
+    index = static_cast<std::uint16_t>(index - group->elements * group->fields);
+  }
+  return params::fields[group->first_field + index % group->fields];
+}
 
 params::Table random_set(Random& random);
 

@@ -8,6 +8,14 @@
 #include <stdlib.h>
 #include <string.h>
 
+inline uint16_t next_random() {  // xorshift, full period
+  static uint16_t state = 1;
+  state = static_cast<uint16_t>(state ^ (state << 7));
+  state = static_cast<uint16_t>(state ^ (state >> 9));
+  state = static_cast<uint16_t>(state ^ (state << 8));
+  return state;
+}
+
 // A whole tick's duties towards the hardware; whether it had to be told that the one before was late.
 inline bool finish_tick() {
   const bool late = hal::tick_begin().late;

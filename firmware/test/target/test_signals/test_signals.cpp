@@ -10,15 +10,6 @@ namespace {
 
 using app::Signals;
 
-uint16_t state = 1;
-
-uint16_t next_random() {  // xorshift, full period
-  state = static_cast<uint16_t>(state ^ (state << 7));
-  state = static_cast<uint16_t>(state ^ (state >> 9));
-  state = static_cast<uint16_t>(state ^ (state << 8));
-  return state;
-}
-
 void calibrate(signal_chain::Pot& pot) {
   constexpr int16_t scales[] = {10734, -10734, 1, -1, 16384, -16384};
   const uint16_t zero = next_random() % 16369;

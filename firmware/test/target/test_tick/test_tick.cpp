@@ -77,6 +77,20 @@ void age() {
   WITHIN("age_counts_time_and_interrupts", middle, 300, 400);
 }
 
+struct Next {
+  bool late, fresh;
+};
+
+// What the next tick is told, and whether it is given samples.
+Next next_tick() {
+  wait_for_tick();
+  const bool late = hal::tick_begin().late;
+  const bool fresh = hal::pot_sums() != nullptr;
+  hal::release_pots();
+  hal::tick_end();
+  return {late, fresh};
+}
+
 void broken_chain() {
   catch_up();
   wait_for_tick();
@@ -92,15 +106,11 @@ void broken_chain() {
     wait_for_tick();
     finish_tick();
   }
-  wait_for_tick();
-  const bool late_again = hal::tick_begin().late;
-  const bool fresh = hal::pot_sums() != nullptr;
-  hal::release_pots();
-  hal::tick_end();
+  const Next next = next_tick();
   EQUAL("an_unfinished_chain_is_told_at_the_next_tick", told, true);
   EQUAL("and_its_samples_are_not_given", none, true);
-  EQUAL("a_new_chain_mends_it", late_again, false);
-  EQUAL("with_samples", fresh, true);
+  EQUAL("a_new_chain_mends_it", next.late, false);
+  EQUAL("with_samples", next.fresh, true);
 }
 
 // How long the chain takes from tick to tick, under load: what is left is the margin before the next tick.
@@ -142,20 +152,15 @@ void overrun() {
   hal::tick_end();
   wait_for_tick();
   finish_tick();
-  wait_for_tick();
-  const bool late_again = hal::tick_begin().late;
-  const bool fresh = hal::pot_sums() != nullptr;
-  hal::release_pots();
-  hal::tick_end();
-
+  const Next next = next_tick();
   EQUAL("drivers_are_on", on, enable);
   WITHIN("an_unfinished_tick_turns_the_drivers_off_at_the_next", waited, 1, cycles_per_tick + 100);
   EQUAL("and_they_stay_off", PORTH & enable, 0);
   WITHIN("age_goes_on_over_missed_ticks", age, 2500, 2520);
   EQUAL("the_next_tick_is_told", after.late, true);
   EQUAL("and_how_many_it_missed", after.elapsed, 3);
-  EQUAL("afterwards_ticks_are_in_time_again", late_again, false);
-  EQUAL("with_fresh_samples", fresh, true);
+  EQUAL("afterwards_ticks_are_in_time_again", next.late, false);
+  EQUAL("with_fresh_samples", next.fresh, true);
 }
 
 }  // namespace

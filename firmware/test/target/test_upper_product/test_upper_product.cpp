@@ -7,15 +7,6 @@
 
 namespace {
 
-uint16_t state = 1;
-
-uint16_t next_random() {  // xorshift, full period
-  state = static_cast<uint16_t>(state ^ (state << 7));
-  state = static_cast<uint16_t>(state ^ (state >> 9));
-  state = static_cast<uint16_t>(state ^ (state << 8));
-  return state;
-}
-
 // Volatile, so that the compiler does not know the factors.
 bool is_right(uint16_t a, uint16_t b) {
   volatile uint16_t x = a, y = b;
