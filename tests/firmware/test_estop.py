@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-import struct
-
 import numpy as np
 import pytest
 
 from greywhale.protocol import schema
-from greywhale_sim.board_with_image import CYCLES_PER_TICK, BoardWithImage
-from tests.firmware.test_stop import enable
-from tests.firmware.test_unrest import apply
+from greywhale_sim.board_with_image import BoardWithImage
+from tests.firmware.conftest import apply, enable, ms_until_off
 
 PHASES = 60
 TICK_AND_ITS_WORK_MS = 1.06  # the pin is read once in each tick, after the potentiometers
@@ -37,15 +34,6 @@ def drive(bench: BoardWithImage) -> None:
     assert bench.duty() > 0.0
 
 
-def ms_until_off(bench: BoardWithImage) -> float:
-    """Until the drivers are off and the duty is gone, to 4 us."""
-    begun = bench.board.cycle
-    while bench.motors_on or bench.duty() > 0.0:
-        bench.board.run_until(bench.board.cycle + 64)
-        assert bench.board.cycle - begun < 10 * CYCLES_PER_TICK
-    return float((bench.board.cycle - begun) / CYCLES_PER_TICK)
-
-
 @pytest.mark.slow
 def test_motors_are_off_within_a_tick_of_the_pin_going_low(bench: BoardWithImage) -> None:
     took = []
@@ -70,13 +58,13 @@ def test_a_pressed_stop_cannot_be_cleared_and_a_released_one_can(bench: BoardWit
     press(bench)
     bench.wait(2)
     with pytest.raises(RuntimeError, match="ClearFault"):
-        bench.ask(schema.ClearFaultRequest)
+        bench.ask(schema.ClearFaultRequest())
     release(bench)
     bench.wait(1000)
     assert not bench.motors_on, "it is latched"
     assert bench.status().fault is schema.Fault.ESTOP
     with pytest.raises(RuntimeError, match="Enable"):
-        bench.ask(schema.EnableRequest, struct.pack("<H", 0))
+        bench.ask(schema.EnableRequest(0))
     enable(bench)
 
 
@@ -87,7 +75,7 @@ def test_a_tap_while_the_motors_are_off_keeps_them_off(bench: BoardWithImage) ->
     bench.wait(5)
     assert (bench.status().state, bench.status().fault) == (schema.State.FAULT, schema.Fault.ESTOP)
     with pytest.raises(RuntimeError, match="Enable"):
-        bench.ask(schema.EnableRequest, struct.pack("<H", 0))
+        bench.ask(schema.EnableRequest(0))
 
 
 def test_a_stop_that_is_pressed_through_a_reset_keeps_the_motors_off(bench: BoardWithImage) -> None:

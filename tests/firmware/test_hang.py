@@ -6,13 +6,13 @@ its bootloader decides what can be told. The bootloaders are the boards' own.
 
 from __future__ import annotations
 
-import struct
 from collections.abc import Callable
 
 import pytest
 
 from greywhale.protocol import schema
-from greywhale_sim.board_with_image import CYCLES_PER_TICK, BoardWithImage
+from greywhale_sim.board_with_image import BoardWithImage
+from tests.firmware.conftest import enable, ms_until_off
 from tests.simulated_board.stk500 import Version1, Version2
 
 PHASES = 20
@@ -63,8 +63,7 @@ def flash_a_page(bench: BoardWithImage) -> None:
 
 def follow(bench: BoardWithImage) -> None:
     """Motors on, and some phase of a tick."""
-    bench.ask(schema.ClearFaultRequest)
-    bench.ask(schema.EnableRequest, struct.pack("<H", 0))
+    enable(bench)
     bench.wait(bench.random.uniform(5, 40))
 
 
@@ -85,14 +84,7 @@ def go_astray(bench: BoardWithImage) -> None:
 
 
 def reset_cause(bench: BoardWithImage) -> schema.ResetCause:
-    return schema.HelloReply.unpack(bench.ask(schema.HelloRequest)).reset_cause
-
-
-def ms_until_off(bench: BoardWithImage) -> float:
-    begun = bench.board.cycle
-    while bench.motors_on:
-        bench.board.run_until(bench.board.cycle + 200)
-    return float((bench.board.cycle - begun) / CYCLES_PER_TICK)
+    return bench.ask(schema.HelloRequest()).reset_cause
 
 
 @pytest.mark.slow
@@ -156,16 +148,10 @@ def test_no_other_restart_is_taken_for_a_hang(booted: BoardWithImage) -> None:
 @pytest.mark.slow
 def test_the_watchdog_leaves_boot_and_every_step_of_a_parameter_set_alone(bench: BoardWithImage) -> None:
     """Staged, applied, saved into both banks, with telemetry on and a reset at the end: the watchdog never bites."""
-    bench.ask(schema.TelemetryRequest, struct.pack("<H", 1))
-    values = list(schema.DEFAULTS)
+    bench.ask(schema.TelemetryRequest(1))
     for soft_start_ms in (700, 800, 900):
-        index = schema.PARAMETER_BY_NAME["soft_start_ms"].index
-        values[index] = soft_start_ms
-        bench.ask(schema.ParamSetRequest, struct.pack("<Hi", index, soft_start_ms))
-        bench.ask(schema.ParamApplyRequest, struct.pack("<H", schema.param_crc(values)))
-        bench.ask(schema.ParamSaveRequest)
-        bench.wait(1000)
-        assert bench.status().save_state is schema.SaveState.SAVED
+        bench.apply({"soft_start_ms": soft_start_ms}, fresh=True)
+        bench.save()
     bench.board.reset()
     bench.wait(60)
     assert bench.status().fault is schema.Fault.NONE

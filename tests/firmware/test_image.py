@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import struct
-
 import pytest
 
 from greywhale.protocol import frames, schema
@@ -29,25 +27,20 @@ def test_a_babbling_host_neither_starts_the_motors_nor_delays_a_tick(bench: Boar
 
 
 def test_a_babbling_host_delays_no_tick_of_a_moving_arm_and_ends_in_a_fault(bench: BoardWithImage) -> None:
-    bench.ask(schema.TelemetryRequest, struct.pack("<H", 1))
-    bench.ask(schema.EnableRequest, struct.pack("<H", 0))
+    bench.ask(schema.TelemetryRequest(1))
+    bench.ask(schema.EnableRequest(0))
     babble(bench, 500)
     seen = bench.status()
     assert (seen.state, seen.fault) == (schema.State.FAULT, schema.Fault.FLOOD)
     assert seen.late_ticks == 0
-    assert schema.ClearFaultReply.unpack(bench.ask(schema.ClearFaultRequest)).state == schema.State.DISABLED
+    assert bench.ask(schema.ClearFaultRequest()).state == schema.State.DISABLED
 
 
 def test_the_board_counts_the_sets_that_were_stored(bench: BoardWithImage) -> None:
     assert bench.status().saves == 0, "its EEPROM is blank"
-    values = list(schema.DEFAULTS)
-    for saves, limit in enumerate((1.0, 1.1, 1.1, 1.2)):
-        parameter = schema.PARAMETER_BY_NAME["tracking_limit"]
-        values[parameter.index] = parameter.to_raw(limit)
-        bench.ask(schema.ParamSetRequest, struct.pack("<Hi", parameter.index, values[parameter.index]))
-        bench.ask(schema.ParamApplyRequest, struct.pack("<H", schema.param_crc(values)))
-        bench.ask(schema.ParamSaveRequest)
-        bench.wait(1500)
+    for saves, limit in enumerate((4096, 4506, 4506, 4915)):
+        bench.apply({"tracking_limit": limit}, fresh=True)
+        bench.save()
         assert bench.status().saves == (saves + 1 if saves < 2 else saves), "the same set again writes nothing"
     bench.board.reset()
     bench.wait(100)
@@ -55,8 +48,8 @@ def test_the_board_counts_the_sets_that_were_stored(bench: BoardWithImage) -> No
 
 
 def test_enabling_right_after_applying_works(bench: BoardWithImage) -> None:
-    bench.ask(schema.ParamApplyRequest, struct.pack("<H", schema.param_crc(schema.DEFAULTS)))
-    bench.ask(schema.EnableRequest, struct.pack("<H", 0))
+    bench.ask(schema.ParamApplyRequest(schema.param_crc(schema.DEFAULTS)))
+    bench.ask(schema.EnableRequest(0))
     bench.wait(1200)
     assert bench.status().state == schema.State.FOLLOWING
 
@@ -65,7 +58,7 @@ def test_a_reset_while_the_motors_run_leaves_them_off(bench: BoardWithImage) -> 
     bench.apply(UNWATCHED)  # its follower stays where it is
     bench.millivolts[0] += 300
     bench.board.set_millivolts(bench.millivolts)
-    bench.ask(schema.EnableRequest, struct.pack("<H", 0))
+    bench.ask(schema.EnableRequest(0))
     bench.wait(500)
     assert bench.duty() > 0.05
     bench.board.reset()
@@ -76,14 +69,9 @@ def test_a_reset_while_the_motors_run_leaves_them_off(bench: BoardWithImage) -> 
 
 
 def test_a_damaged_newest_set_is_a_fault_until_the_host_has_confirmed_one(bench: BoardWithImage) -> None:
-    values = list(schema.DEFAULTS)
-    index = schema.PARAMETER_BY_NAME["joint1.motor_sign"].index
     for sign in (1, -1):
-        values[index] = sign
-        bench.ask(schema.ParamSetRequest, struct.pack("<Hi", index, sign))
-        bench.ask(schema.ParamApplyRequest, struct.pack("<H", schema.param_crc(values)))
-        bench.ask(schema.ParamSaveRequest)
-        bench.wait(1000)
+        bench.apply({"joint1.motor_sign": sign}, fresh=True)
+        bench.save()
     content = bytearray(bench.board.eeprom())
     content[300] ^= 1  # in bank B, which holds the second set
     bench.board.set_eeprom(bytes(content))
@@ -91,10 +79,9 @@ def test_a_damaged_newest_set_is_a_fault_until_the_host_has_confirmed_one(bench:
     bench.wait(60)
     assert (bench.status().state, bench.status().fault) == (schema.State.FAULT, schema.Fault.PARAMS)
     with pytest.raises(RuntimeError, match="ClearFault"):
-        bench.ask(schema.ClearFaultRequest)
-    bench.ask(schema.ParamSetRequest, struct.pack("<Hi", index, -1))
-    bench.ask(schema.ParamApplyRequest, struct.pack("<H", schema.param_crc(values)))
-    assert schema.ClearFaultReply.unpack(bench.ask(schema.ClearFaultRequest)).state == schema.State.DISABLED
+        bench.ask(schema.ClearFaultRequest())
+    bench.apply({"joint1.motor_sign": -1}, fresh=True)
+    assert bench.ask(schema.ClearFaultRequest()).state == schema.State.DISABLED
 
 
 def leader(bench: BoardWithImage) -> tuple[int, ...]:
@@ -106,12 +93,12 @@ def leader(bench: BoardWithImage) -> tuple[int, ...]:
 
 
 def test_a_host_that_leads_costs_the_tick_nothing_and_delays_none(bench: BoardWithImage) -> None:
-    bench.ask(schema.TelemetryRequest, struct.pack("<H", 1))
-    bench.ask(schema.EnableRequest, struct.pack("<H", 0))
+    bench.ask(schema.TelemetryRequest(1))
+    bench.ask(schema.EnableRequest(0))
     bench.wait(1100)
     by_pots = max(bench.tick_cycles()[1] for _ in range(50))
-    bench.ask(schema.StopRequest)
-    reply = schema.LeadReply.unpack(bench.ask(schema.LeadRequest, struct.pack("<H", 60000)))
+    bench.ask(schema.StopRequest())
+    reply = bench.ask(schema.LeadRequest(60000))
     bench.wait(1100)
     assert (
         max(bench.tick_cycles()[1] for _ in range(50)) <= by_pots + 10
@@ -119,12 +106,11 @@ def test_a_host_that_leads_costs_the_tick_nothing_and_delays_none(bench: BoardWi
     number, taken = reply.next, []
     for step in [*range(0, 40, 8), *range(40, -32, -8), *range(-32, 8, 8)]:
         taken.append(step)
-        payload = schema.LeadPointRequest(number, (step, -step, step // 2, 0)).pack()
-        number = schema.LeadPointReply.unpack(bench.ask(schema.LeadPointRequest, payload)).next
+        number = bench.ask(schema.LeadPointRequest(number, (step, -step, step // 2, 0))).next
         bench.wait(14.5)
     assert max(bench.tick_cycles()[1] for _ in range(50)) <= 3200
     assert number == (reply.next + len(taken)) % 256
-    after = schema.LeadReply.unpack(bench.ask(schema.LeadRequest, struct.pack("<H", 60000)))
+    after = bench.ask(schema.LeadRequest(60000))
     assert after.reference[0] == reply.reference[0] + 4 * sum(taken)
     assert leader(bench) == after.reference
     assert bench.status().state == schema.State.FOLLOWING

@@ -9,9 +9,8 @@ import pytest
 from greywhale.fuzzy import twin
 from greywhale.fuzzy.settings import JointSettings
 from greywhale.protocol import schema
-from greywhale_sim.board_with_image import CYCLES_PER_TICK, BoardWithImage
-from tests.firmware.test_stop import enable
-from tests.firmware.test_unrest import apply
+from greywhale_sim.board_with_image import BoardWithImage
+from tests.firmware.conftest import apply, enable, ms_until_off
 
 FLIPS = 60
 LOOK_MS = 4.0  # at one joint after each tick
@@ -68,13 +67,6 @@ def flip(bench: BoardWithImage, address: int) -> None:
     bench.board.poke(address, bytes([bench.board.peek(address, 1)[0] ^ 1 << int(bench.random.integers(8))]))
 
 
-def ms_until_off(bench: BoardWithImage) -> float:
-    begun = bench.board.cycle
-    while bench.motors_on and bench.board.cycle - begun < 1000 * CYCLES_PER_TICK:
-        bench.wait(0.25)
-    return float((bench.board.cycle - begun) / CYCLES_PER_TICK)
-
-
 @pytest.mark.slow
 def test_motors_are_off_soon_after_any_bit_of_the_running_set_has_flipped(bench: BoardWithImage) -> None:
     parts = watched(bench)
@@ -83,7 +75,7 @@ def test_motors_are_off_soon_after_any_bit_of_the_running_set_has_flipped(bench:
         enable(bench)
         bench.wait(bench.random.uniform(0, 60))
         flip(bench, address + int(bench.random.integers(size)))
-        assert ms_until_off(bench) <= 2 * ROUND_MS + 1
+        assert ms_until_off(bench, step_ms=0.25) <= 2 * ROUND_MS + 1
         seen = bench.status()
         assert seen.late_ticks == 0
         assert seen.fault in (schema.Fault.MEMORY, schema.Fault.ESTOP), "a flipped estop_input means an opening button"
@@ -118,7 +110,7 @@ def test_damaged_parameters_are_told_with_the_motors_off_as_well_until_a_set_is_
     bench.wait(2 * ROUND_MS)
     assert (bench.status().state, bench.status().fault) == (schema.State.FAULT, schema.Fault.MEMORY)
     with pytest.raises(RuntimeError, match="ClearFault"):
-        bench.ask(schema.ClearFaultRequest)
+        bench.ask(schema.ClearFaultRequest())
     apply(bench, *SOFT_START)
     enable(bench)
     bench.wait(2 * ROUND_MS)
@@ -134,13 +126,9 @@ def test_the_staged_set_is_not_looked_over(bench: BoardWithImage) -> None:
 
 
 def test_a_set_that_is_refused_or_saved_is_no_damage(bench: BoardWithImage) -> None:
-    index = schema.PARAMETER_BY_NAME["joint2.ze_c"].index
-    values = list(schema.DEFAULTS)
-    values[index] = 1  # narrower than any set may be
-    bench.ask(schema.ParamSetRequest, struct.pack("<Hi", index, 1))
     with pytest.raises(RuntimeError, match="Apply"):
-        bench.ask(schema.ParamApplyRequest, struct.pack("<H", schema.param_crc(values)))
-    bench.ask(schema.ParamSaveRequest)
+        bench.apply({"joint2.ze_c": 1}, fresh=True)  # narrower than any set may be
+    bench.ask(schema.ParamSaveRequest())
     enable(bench)
     bench.wait(1000)
     assert bench.motors_on

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import struct
 from collections.abc import Callable
 
 import numpy as np
@@ -12,6 +11,7 @@ from greywhale.board.device import STOP_REPEAT_S, stop_message
 from greywhale.protocol import frames, schema
 from greywhale_sim.board_with_image import CYCLES_PER_TICK, BoardWithImage
 from greywhale_sim.line import Noise
+from tests.firmware.conftest import enable
 
 OFF_MS = 30.0
 PIECE_MS = 0.1  # the flood is poured in so small pieces
@@ -42,12 +42,6 @@ def too_long(random: np.random.Generator, count: int) -> bytes:
 
 def zeros(_: np.random.Generator, count: int) -> bytes:
     return bytes(count)
-
-
-def enable(bench: BoardWithImage) -> None:
-    bench.ask(schema.ClearFaultRequest)
-    bench.ask(schema.EnableRequest, struct.pack("<H", 0))
-    assert bench.motors_on
 
 
 class Pour:
@@ -81,7 +75,7 @@ class Pour:
 def test_motors_are_off_soon_after_a_stop_inside_a_flood_or_after_the_line_is_lost(
     bench: BoardWithImage, kind: Flood, rate: int
 ) -> None:
-    bench.ask(schema.TelemetryRequest, struct.pack("<H", 1))
+    bench.ask(schema.TelemetryRequest(1))
     for _ in range(3):
         enable(bench)
         flood = Pour(bench, kind, rate)

@@ -7,7 +7,7 @@ import pytest
 
 from greywhale.protocol import schema
 from greywhale_sim.board_with_image import CYCLES_PER_TICK, BoardWithImage
-from tests.firmware.test_stop import enable
+from tests.firmware.conftest import apply, enable
 
 MILLIVOLTS_A_RAD = 5000.0 / np.deg2rad(300.0)
 FOLLOWER = 4  # the first of its pots
@@ -55,12 +55,6 @@ def test_a_joint_that_swings_with_its_leader_keeps_its_motors(bench: BoardWithIm
     assert bench.status().fault is schema.Fault.NONE
 
 
-def apply(bench: BoardWithImage, name: str, raw: int) -> None:
-    """Run the defaults with another value of one parameter."""
-    bench.apply({name: raw}, fresh=True)
-    bench.wait(20)
-
-
 @pytest.mark.slow
 def test_the_safe_set_takes_over_within_some_ticks_and_none_is_late(bench: BoardWithImage) -> None:
     apply(bench, "unrest_action", 1)
@@ -84,5 +78,5 @@ def test_looking_for_unrest_costs_the_tick_nothing(bench: BoardWithImage) -> Non
         enable(bench)
         bench.wait(1100)
         worst.append(max(bench.tick_cycles()[1] for _ in range(60)))
-        bench.ask(schema.StopRequest)
+        bench.ask(schema.StopRequest())
     assert worst[1] <= worst[0] + 10  # the same work: the pots are at rest

@@ -6,7 +6,6 @@ told: the true error is the true leader minus the true follower.
 
 from __future__ import annotations
 
-import struct
 from collections.abc import Callable, Mapping
 
 import numpy as np
@@ -15,7 +14,7 @@ from greywhale.arm import Arm, Potentiometers
 from greywhale.base.types import Floats
 from greywhale.files.arm import default_arm
 from greywhale.protocol import schema
-from greywhale.protocol.declared import Message
+from greywhale.protocol.declared import Reply_co, Request
 from greywhale_sim.board_with_image import BoardWithImage
 
 PotFault = Callable[[Floats, float], None]  # changes the eight voltages (mV) a time (s) after it began
@@ -90,15 +89,15 @@ class ArmOnBoard(BoardWithImage):
 
     # --- the host
 
-    def ask(self, message: type[Message], payload: bytes = b"") -> bytes:
+    def ask(self, request: Request[Reply_co]) -> Reply_co:
         """A board that restarts is asked again; a zero ends what the line carried before."""
         self.board.uart_send(b"\0")
         try:
-            return super().ask(message, payload)
+            return super().ask(request)
         except RuntimeError:
             self.wait(50)
             self.board.uart_send(b"\0")
-            return super().ask(message, payload)
+            return super().ask(request)
 
     def run_set(self, changes: Mapping[str, int]) -> None:
         """Run the defaults with these raw values, and find out where they lie."""
@@ -114,9 +113,9 @@ class ArmOnBoard(BoardWithImage):
         self.stuck.clear()
         self.board.set_floating(0)
         self.board.let_pin_go(self.wiring.estop.port, self.wiring.estop.bit)
-        self.ask(schema.StopRequest)
+        self.ask(schema.StopRequest())
         self.motion_s = 0.0
         self.wait(80)
-        self.ask(schema.ClearFaultRequest)
+        self.ask(schema.ClearFaultRequest())
         self.shift_phase()
-        self.ask(schema.EnableRequest, struct.pack("<H", 0))
+        self.ask(schema.EnableRequest(0))

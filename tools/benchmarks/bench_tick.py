@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import struct
-
 import numpy as np
 
 from greywhale.protocol import schema
@@ -19,7 +17,7 @@ SETS, TICKS_PER_SET = 300, 10  # for the worst tick over the parameters
 def ticks(name: str) -> list[Figure]:
     bench = BoardWithImage(name)
     bench.apply(UNWATCHED)
-    bench.ask(schema.EnableRequest, struct.pack("<H", 0))
+    bench.ask(schema.EnableRequest(0))
     bench.wait(1100)
     whole, alone = [], []
     for _ in range(TICKS):
@@ -48,19 +46,19 @@ def over_parameters(name: str) -> Figure:
             values |= {f"joint{joint}.{key}": value for key, value in vars(draw.settings(1)).items()}
         bench.apply(values)
         bench.wait(30)
-        bench.ask(schema.EnableRequest, struct.pack("<H", 0))
+        bench.ask(schema.EnableRequest(0))
         bench.wait(110)
         for _ in range(TICKS_PER_SET):
             bench.wiggle(10.0 ** bench.random.uniform(0, 3.3))
             worst = max(worst, bench.tick_cycles()[1])
-        bench.ask(schema.StopRequest)
+        bench.ask(schema.StopRequest())
     return Figure(f"{name.title()}: tick, worst of {SETS * TICKS_PER_SET} over the parameters", worst, "cycles")
 
 
 def jitter(name: str) -> Figure:
     """Of the tick's interrupt, which starts the first conversion itself, while telemetry and noise use the link."""
     bench = BoardWithImage(name)
-    bench.ask(schema.TelemetryRequest, struct.pack("<H", 1))
+    bench.ask(schema.TelemetryRequest(1))
     first = bench.next_entry()
     late = []
     for i in range(1, TICKS):
@@ -76,7 +74,7 @@ def latency(name: str) -> list[Figure]:
     """From a step at a leader pot to the first change of the duty, over all phases of the tick."""
     bench = BoardWithImage(name)
     bench.apply(UNWATCHED)
-    bench.ask(schema.EnableRequest, struct.pack("<H", 0))
+    bench.ask(schema.EnableRequest(0))
     bench.wait(1100)
     delays = []
     for _ in range(60):

@@ -5,14 +5,13 @@ For those who measure it or attack it, in a checkout.
 
 from __future__ import annotations
 
-import struct
 from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
 from greywhale.protocol import frames, schema
-from greywhale.protocol.declared import Message
+from greywhale.protocol.declared import Reply_co, Request
 from greywhale_sim._board import Board
 from greywhale_sim.assemble import BUILDS
 from greywhale_sim.symbols import read_symbols
@@ -21,6 +20,7 @@ from greywhale_sim.wiring import BOARDS
 CYCLES_PER_TICK = 16_000
 PAINT = 0xA5
 PATIENCE_MS = 60
+SAVE_MS = 1000.0  # a save of a whole set takes up to 910 ms
 UNWATCHED = {"speed_limit": 0, "runaway_limit": 0, "stall_volts": 0}  # potentiometers here move as no arm does
 RUNNING = "_ZN3hal12_GLOBAL__N_17runningE"  # hal's flag, set from the timer's interrupt to the end of the tick
 VECTOR = {"atmega2560": "__vector_21", "atmega328p": "__vector_14"}  # of the tick
@@ -66,29 +66,36 @@ class BoardWithImage:
 
     # --- the host
 
-    def ask(self, message: type[Message], payload: bytes = b"") -> bytes:
-        """The payload of the answer; RuntimeError where the board refuses."""
+    def ask(self, request: Request[Reply_co]) -> Reply_co:
+        """The answer; RuntimeError where the board refuses."""
         self.board.uart_receive()
-        self.board.uart_send(frames.encode_frame(message.TYPE, 1, payload))
+        self.board.uart_send(frames.encode_frame(request.TYPE, 1, request.pack()))
         decoder = frames.FrameDecoder()
         for _ in range(PATIENCE_MS):
             self.wait(1)
             for frame in decoder.feed(self.board.uart_receive()):
-                if frame.type == message.TYPE | 0x80:
-                    return bytes(frame.payload)
-        raise RuntimeError(f"the firmware did not do as asked: {message.__name__}")
+                if frame.type == request.TYPE | schema.REPLY_BIT:
+                    return request.reply(frame.payload)
+        raise RuntimeError(f"the firmware did not do as asked: {request}")
 
     def status(self) -> schema.StatusReply:
-        return schema.StatusReply.unpack(self.ask(schema.StatusRequest))
+        return self.ask(schema.StatusRequest())
 
     def apply(self, changes: Mapping[str, int], fresh: bool = False) -> list[int]:
         """Run the defaults but for these raw values; all values. On a `fresh` board all others are defaults already."""
         changed = {schema.PARAMETER_BY_NAME[name].index: raw for name, raw in changes.items()}
         values = [changed.get(index, raw) for index, raw in enumerate(schema.DEFAULTS)]
         for index in changed if fresh else range(len(values)):
-            self.ask(schema.ParamSetRequest, struct.pack("<Hi", index, values[index]))
-        self.ask(schema.ParamApplyRequest, struct.pack("<H", schema.param_crc(values)))
+            self.ask(schema.ParamSetRequest(index, values[index]))
+        self.ask(schema.ParamApplyRequest(schema.param_crc(values)))
         return values
+
+    def save(self) -> None:
+        """Store the running set; RuntimeError where that fails."""
+        self.ask(schema.ParamSaveRequest())
+        self.wait(SAVE_MS)
+        if self.status().save_state is not schema.SaveState.SAVED:
+            raise RuntimeError("the firmware did not store its set")
 
     # --- memory
 
@@ -137,12 +144,12 @@ class BoardWithImage:
 def ram_of_a_life(board: str) -> int:
     """Bytes of variables and of the deepest stack: boot, every request, a set applied and saved, following, noise."""
     bench = BoardWithImage(board)
-    for message in (schema.HelloRequest, schema.StatusRequest, schema.StopRequest, schema.ClearFaultRequest):
-        bench.ask(message)
+    for request in (schema.HelloRequest(), schema.StatusRequest(), schema.StopRequest(), schema.ClearFaultRequest()):
+        bench.ask(request)
     bench.apply({})
-    bench.ask(schema.ParamSaveRequest)
-    bench.ask(schema.TelemetryRequest, struct.pack("<H", 1))
-    bench.ask(schema.EnableRequest, struct.pack("<H", 0))
+    bench.ask(schema.ParamSaveRequest())
+    bench.ask(schema.TelemetryRequest(1))
+    bench.ask(schema.EnableRequest(0))
     bench.board.uart_send(bench.random.bytes(20_000))
     bench.wait(1500)
     return bench.statics + bench.stack()

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import struct
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -38,7 +37,7 @@ def traced(request: pytest.FixtureRequest) -> tuple[Target, Program, list[Step]]
     target: Target = request.param
     session = Session(target, seed=3)
     session.run_set({"tracking_limit": 1, "tracking_ms": 60_000, "filter_shift": 2, "unrest_amplitude": 0})
-    session.ask(schema.TelemetryRequest, struct.pack("<H", 1))
+    session.ask(schema.TelemetryRequest(1))
     return target, read_program(target.elf), list(_trace(session))
 
 
@@ -134,7 +133,7 @@ def test_the_deepest_stack_stays_below_its_bound(target: Target) -> None:
     session.board.poke(top - bound.free, bytes([0xA5]) * bound.free)
     session.board.run_until(session.board.cycle + 60 * PERIOD)
     session.run_set({"filter_shift": 2})
-    session.ask(schema.TelemetryRequest, struct.pack("<H", 1))
+    session.ask(schema.TelemetryRequest(1))
     session.board.uart_send(session.random.bytes(8000))
     session.board.run_until(session.board.cycle + 120 * PERIOD)
     memory = session.board.peek(top - bound.free, bound.free)

@@ -15,7 +15,6 @@ from tools.attack.part import Part, Piece, Row, split
 
 CUTS, PER_PIECE = 10_000, 250
 SUPPLY_MV = 5000.0
-SAVE_MS = 1000.0  # a save of a whole set takes up to 910 ms
 HISTORIES = ("the first save of a blank EEPROM", "the second save, into the other bank", "the third, over the oldest")
 CHANGED = ("kp", "kd", "ki", "zero", "soft_start_ms", "tracking_ms")
 SAVE = frames.encode_frame(schema.ParamSaveRequest.TYPE, 9, b"")
@@ -34,13 +33,7 @@ def stage_another(bench: BoardWithImage, random: np.random.Generator) -> int:
 
 
 def running_crc(bench: BoardWithImage) -> int:
-    return int(schema.HelloReply.unpack(bench.ask(schema.HelloRequest)).param_crc)
-
-
-def save(bench: BoardWithImage) -> None:
-    bench.ask(schema.ParamSaveRequest)
-    bench.wait(SAVE_MS)
-    assert bench.status().save_state is schema.SaveState.SAVED
+    return int(bench.ask(schema.HelloRequest()).param_crc)
 
 
 def cut(bench: BoardWithImage, seed: int) -> None:
@@ -89,7 +82,7 @@ def cut_and_look(bench: BoardWithImage, old: int, new: int, seed: int, before: b
     cut(bench, seed)
     found = judge(bench, old, new, bench.board.eeprom() != before, saved)
     again = stage_another(bench, np.random.default_rng(seed))
-    save(bench)
+    bench.save()
     cut(bench, seed + 2)
     whole = running_crc(bench) == again
     return found if whole else "wrong: the next save did not end well"
@@ -97,7 +90,7 @@ def cut_and_look(bench: BoardWithImage, old: int, new: int, seed: int, before: b
 
 def cycles_of_a_save(bench: BoardWithImage) -> int:
     begun = bench.board.cycle
-    bench.ask(schema.ParamSaveRequest)
+    bench.ask(schema.ParamSaveRequest())
     while bench.status().save_state is not schema.SaveState.SAVED:
         bench.wait(1)
     return int(bench.board.cycle - begun)
@@ -109,7 +102,7 @@ def cut_a_save(board: str, earlier: int, trials: int, seed: int) -> Row:
     old = running_crc(bench)
     for _ in range(earlier):
         old = stage_another(bench, random)
-        save(bench)
+        bench.save()
     new = stage_another(bench, random)
     before, length = bench.board.eeprom(), in_a_copy(partial(cycles_of_a_save, bench))
     bench.board.uart_send(SAVE)

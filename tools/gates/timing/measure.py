@@ -6,12 +6,10 @@ joints far apart, errors that saturate, with telemetry and a busy line.
 
 from __future__ import annotations
 
-import struct
-
 import numpy as np
 
 from greywhale.protocol import frames, schema
-from greywhale.protocol.declared import Message
+from greywhale.protocol.declared import Reply_co, Request
 from greywhale_sim.board_with_image import BoardWithImage
 from greywhale_sim.wiring import BOARDS
 from tools.gates.timing.image import PERIOD, TICK, Target
@@ -37,10 +35,10 @@ class Session(BoardWithImage):
         self.tick = read_program(target.elf).entry(TICK)
         self.return_address = target.chip.return_address
 
-    def ask(self, message: type[Message], payload: bytes = b"") -> bytes:
+    def ask(self, request: Request[Reply_co]) -> Reply_co:
         """A zero first: noise may have come before."""
         self.board.uart_send(b"\0")
-        return super().ask(message, payload)
+        return super().ask(request)
 
     def rest(self) -> None:
         self.board.set_millivolts(self.millivolts)
@@ -50,13 +48,13 @@ class Session(BoardWithImage):
 
     def run_set(self, values: dict[str, int]) -> None:
         """Runs the defaults but for these values, motors on."""
-        self.ask(schema.StopRequest)
+        self.ask(schema.StopRequest())
         self.rest()
         self.wait(40)
-        self.ask(schema.ClearFaultRequest)
+        self.ask(schema.ClearFaultRequest())
         self.apply(values)
         self.wait(30)
-        self.ask(schema.EnableRequest, struct.pack("<H", 0))
+        self.ask(schema.EnableRequest(0))
         self.wait(5)
 
     def end_of_tick(self) -> int:
@@ -124,7 +122,7 @@ def worst(target: Target, sets: int = SETS, seed: int = 5) -> dict[str, int]:
     for number in range(sets):
         values = _near(draw, best[number % len(best)][1]) if number % 4 and best else _parameters(draw)
         session.run_set(values)
-        session.ask(schema.TelemetryRequest, struct.pack("<H", 1))
+        session.ask(schema.TelemetryRequest(1))
         dearest = 0
         for _ in range(TICKS_PER_SET):
             session.disturb()
@@ -152,7 +150,7 @@ def busiest(target: Target, sets: int = SETS, seed: int = 9) -> int:
     longest = 0
     for _ in range(sets):
         session.run_set(_parameters(draw))
-        session.ask(schema.TelemetryRequest, struct.pack("<H", 1))
+        session.ask(schema.TelemetryRequest(1))
         for _ in range(TICKS_PER_SET):
             session.wait(3)
             start = session.next_entry()
