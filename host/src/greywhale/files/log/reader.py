@@ -4,6 +4,7 @@ column.
 
 from __future__ import annotations
 
+import io
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -16,7 +17,6 @@ from greywhale.files.log.check import Check, add_rows, facts_of
 from greywhale.files.log.condition import Condition, judge_condition
 from greywhale.files.log.layout import COLUMNS, COMPLETE, ENDINGS, STATES, TITLE, UNFINISHED, Origin
 from greywhale.files.log.parameters import table_in
-from greywhale.files.log.rows import parse_rows
 from greywhale.protocol.firmware import JOINTS
 from greywhale.protocol.joints import ALL, Joints, parse
 from greywhale.protocol.table import ParameterTable
@@ -29,6 +29,10 @@ _FOLLOWING = STATES.index("following")
 _MOST_CHANGES, _ENOUGH = 1.2, 100
 # Where each quantity stands in a row of numbers, behind the time.
 _PLACES = {name: slice(1 + place * JOINTS, 1 + (place + 1) * JOINTS) for place, name in enumerate(_MOST)}
+# What a row holds; of other letters numpy takes some for blanks.
+_PLAIN = bytes(range(0x20, 0x7F)) + b"\n"
+# A row as numpy reads it; a word that is longer than any state is cut, and still is none.
+_ROW = np.dtype([("numbers", np.float64, (len(COLUMNS) - 1,)), ("state", f"S{max(map(len, STATES)) + 1}")])
 
 
 @dataclass(frozen=True)
@@ -143,6 +147,20 @@ class _Columns:
         self.changes += int(((np.diff(before_each, axis=0) != 0.0).any(axis=1) & (states == _FOLLOWING)).sum())
         self._last = before_each[-1:]
         self.rows = here.stop
+
+
+def parse_rows(data: bytes) -> tuple[NDArray[np.float64], NDArray[np.int8]] | None:
+    """Numbers (rows, 13) and states (rows,) as places in STATES, of whole lines; None where numpy cannot read one."""
+    if data.isspace() or data.translate(None, _PLAIN):
+        return None
+    try:
+        rows = np.loadtxt(io.BytesIO(data), _ROW, delimiter=",", comments=None, ndmin=1)
+    except ValueError:
+        return None
+    states = np.full(len(rows), -1, dtype=np.int8)
+    for place, word in enumerate(STATES):
+        states[rows["state"] == word.encode()] = place
+    return None if (states < 0).any() else (rows["numbers"], states)
 
 
 def _refuse_other_period(name: str, origin: Origin, columns: _Columns) -> None:
