@@ -52,8 +52,7 @@ def plant_row(parameters: ArmParameters) -> Plants:
 
 def rigid_joints(plants: Plants) -> npt.NDArray[np.bool_]:
     """Which joints are not in use, (4,) or (n, 4): those without room between their stops."""
-    rigid: npt.NDArray[np.bool_] = plants[..., columns("stop_max")] <= plants[..., columns("stop_min")]
-    return rigid
+    return plants[..., columns("stop_max")] <= plants[..., columns("stop_min")]
 
 
 def check_plants(plants: Plants) -> Plants:

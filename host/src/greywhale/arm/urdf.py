@@ -226,5 +226,4 @@ def _turn(axis: int, angle: float) -> Floats:
 
 def _parallel(mass: float, away: Floats) -> Floats:
     """What a mass adds to an inertia about a point so far from it (Steiner)."""
-    moved: Floats = mass * (float(away @ away) * np.eye(3) - np.outer(away, away))
-    return moved
+    return mass * (float(away @ away) * np.eye(3) - np.outer(away, away))

@@ -14,16 +14,13 @@ from greywhale.base.types import Floats
 
 def exp(x: ArrayLike) -> Floats:
     """For x from -708 to 709; beyond, as there."""
-    found: Floats = np.asarray(_native.exponential(np.ascontiguousarray(x, dtype=np.float64)))
-    return found
+    return np.asarray(_native.exponential(np.ascontiguousarray(x, dtype=np.float64)))
 
 
 def log(x: ArrayLike) -> Floats:
     """For normal numbers above 0."""
-    found: Floats = np.asarray(_native.logarithm(np.ascontiguousarray(x, dtype=np.float64)))
-    return found
+    return np.asarray(_native.logarithm(np.ascontiguousarray(x, dtype=np.float64)))
 
 
 def cos(x: ArrayLike) -> Floats:
-    found: Floats = np.asarray(_native.cosine(np.ascontiguousarray(x, dtype=np.float64)))
-    return found
+    return np.asarray(_native.cosine(np.ascontiguousarray(x, dtype=np.float64)))

@@ -47,8 +47,7 @@ class Foresight:
 
     def ratios(self, rows: Controllers) -> Floats:
         """(4,): each joint's error on steps with controllers (4, 13), as a share of that before."""
-        ratios: Floats = _errors(self.experiment, self.plant, rows) / np.maximum(self.error, LEAST)
-        return ratios
+        return _errors(self.experiment, self.plant, rows) / np.maximum(self.error, LEAST)
 
     def clauses(self, rows: Controllers) -> tuple[str, ...]:
         """(4): what speaks against each joint's controller, "" for nothing; a controller from before always passes."""

@@ -165,8 +165,7 @@ def _closest(measured: Measures, limits: Limits, name: str, joint: int) -> _Clos
 
 def _allowed(before: Floats, grow: Callable[[Floats], Floats], least: Floats | float, most: float) -> Floats:
     known = np.nan_to_num(before)
-    allowed: Floats = np.maximum(np.clip(grow(known), least, most), known * (1.0 + SAME_SHARE))
-    return allowed
+    return np.maximum(np.clip(grow(known), least, most), known * (1.0 + SAME_SHARE))
 
 
 def _grow_beyond_noise(unrest: Floats, growth: Floats) -> Floats:

@@ -44,8 +44,7 @@ class JointRange:
     def place(self, shares: Floats) -> Floats:
         """Angles for shares from -1 (low) over 0 (pose) to 1 (high)."""
         up, down = self.high - self.pose, self.pose - self.low
-        angles: Floats = self.pose + np.where(shares > 0.0, up, down) * shares
-        return angles
+        return self.pose + np.where(shares > 0.0, up, down) * shares
 
 
 @dataclass(frozen=True)
@@ -103,8 +102,7 @@ def _still(room: JointRange) -> list[Floats]:
 def _within(room: JointRange, angles: Floats) -> Floats:
     """A small move goes to the other side where this side has no room."""
     beyond = (angles > room.high) | (angles < room.low)
-    mirrored: Floats = np.clip(np.where(beyond, 2.0 * room.pose - angles, angles), room.low, room.high)
-    return mirrored
+    return np.clip(np.where(beyond, 2.0 * room.pose - angles, angles), room.low, room.high)
 
 
 def _through(stops: list[Floats], holds: list[float], edge_s: float) -> Trajectory:

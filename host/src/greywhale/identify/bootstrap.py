@@ -145,5 +145,4 @@ def read_motion(shown: Floats, noise: Floats, shift: int, random: np.random.Gene
     for tick in range(len(mean)):
         state = state + share * (mean[tick] - state)
         filtered[tick] = state
-    found: Floats = np.round(filtered / ANGLE_LSB) * ANGLE_LSB
-    return found
+    return np.round(filtered / ANGLE_LSB) * ANGLE_LSB

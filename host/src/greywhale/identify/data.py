@@ -167,8 +167,7 @@ def some_windows(logs: Sequence[Prepared], most: int) -> list[NDArray[np.intp]]:
 
 def _evenly(numbers: NDArray[np.intp], count: int) -> NDArray[np.intp]:
     places = np.round(np.linspace(0, len(numbers) - 1, count)).astype(np.intp)
-    found: NDArray[np.intp] = numbers[places] if len(numbers) else numbers
-    return found
+    return numbers[places] if len(numbers) else numbers
 
 
 def _is_lively(prepared: Prepared) -> NDArray[np.bool_]:

@@ -196,8 +196,7 @@ def _worse_by_chance(estimate: float, draws: Floats) -> float:
 def _unresolved(arm: ArmParameters) -> Floats:
     """What a converter's steps hide, rad² (4,): even the true arm is off its own log by so much."""
     steps = np.array([pot.track for pot in arm.follower_pots.joint]) / COUNTS
-    found: Floats = steps**2 / 12.0
-    return found
+    return steps**2 / 12.0
 
 
 def _squares(one: Floats, other: Floats) -> Floats:

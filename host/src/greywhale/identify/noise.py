@@ -21,5 +21,4 @@ def pot_noise(log: Prepared, filter_shift: int, supply: float) -> Floats:
     share = 1.0 / (1 << filter_shift)
     conversion = log.noise**2 * CONVERSIONS * (2.0 - share) / share
     analog = np.maximum(conversion - (USUAL_TRACK_RAD / STEPS) ** 2 / 12.0, 0.0)
-    noise: Floats = np.sqrt(analog) / USUAL_TRACK_RAD * supply
-    return noise
+    return np.sqrt(analog) / USUAL_TRACK_RAD * supply

@@ -179,8 +179,7 @@ class Space:
             for index, one in enumerate(self.parameters):
                 if one.joint in joints:
                     table[list(joints), index] = True
-        found: NDArray[np.bool_] = table[joint_of]
-        return found
+        return table[joint_of]
 
     def plants(self, points: Floats) -> Floats:
         """Plants (rows, columns) of searched points (rows)."""

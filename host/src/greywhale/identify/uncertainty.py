@@ -68,8 +68,7 @@ class Uncertainty:
     @property
     def deviations(self) -> Floats:
         """Standard deviations of the searched numbers."""
-        found: Floats = np.sqrt(np.diag(self.covariance))
-        return found
+        return np.sqrt(np.diag(self.covariance))
 
     def widened(self, covariance: Floats, space: Space, x: Floats, joints: Sequence[int]) -> Uncertainty:
         """The same with another covariance."""
@@ -109,8 +108,7 @@ def _combine(information: Floats, scatter: Floats, nominal: Floats) -> Floats:
     drawn = (scatter + common * information) / 2.0 + 1e-9 * nominal
     told = information @ np.linalg.solve(drawn, information)
     covariance = np.linalg.inv((told + told.T) / 2.0 + nominal)
-    symmetric: Floats = (covariance + covariance.T) / 2.0
-    return symmetric
+    return (covariance + covariance.T) / 2.0
 
 
 def _whose(parameter: Parameter) -> str:

@@ -150,8 +150,7 @@ class WindowResidual:
             self._costs(windows, log, sides, plant, zero)[0] / len(windows.time)
             for (windows, log), sides in zip(self._pieces, self._sides, strict=True)
         ]
-        found: Floats = np.concatenate(parts)[:, self.joints]
-        return found
+        return np.concatenate(parts)[:, self.joints]
 
     def mse(self, plant: Floats, zero: Floats) -> Floats:
         """Mean squared difference per joint, rad², of one plant, without the part that the best start of a window
@@ -164,8 +163,7 @@ class WindowResidual:
                 left = take_off_starts(error[..., joint], windows, log, plant[None], joint)[0]
                 total[joint] += log.noise[joint] ** 2 * float(np.sum(left[: windows.measured[..., 0].size] ** 2))
             count += windows.measured[..., 0].size
-        mse: Floats = total / max(count, 1)
-        return mse
+        return total / max(count, 1)
 
     def _compare(self, windows: Windows, log: Prepared, sides: Floats, plants: Floats, offsets: Floats) -> Floats:
         error = self._errors(windows, sides, plants, offsets)

@@ -60,8 +60,7 @@ def correlations(leader: Floats, follower: Floats, first: int, last: int) -> Flo
     spread_b = _sums(b * b, ahead, behind) - sum_b**2 / count
     scale = np.sqrt(np.maximum(spread_a, 0.0) * np.maximum(spread_b, 0.0))
     still = scale <= _STILL * np.sqrt(a.dot(a) * b.dot(b))
-    likeness: Floats = np.where(still, 0.0, (products - sum_a * sum_b / count) / np.where(still, 1.0, scale))
-    return likeness
+    return np.where(still, 0.0, (products - sum_a * sum_b / count) / np.where(still, 1.0, scale))
 
 
 def _sums(values: Floats, without_first: NDArray[np.intp], without_last: NDArray[np.intp]) -> Floats:

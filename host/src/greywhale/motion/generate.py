@@ -29,8 +29,7 @@ RANGE_RAD = np.array([[-1.0, 1.0], [-0.2, 1.1], [-0.9, 0.7], [-1.2, 1.2]])
 def minimum_jerk(progress: Floats) -> Floats:
     """The path from 0 to 1 with the least mean squared jerk; at rest at both ends, held outside [0, 1]."""
     s = np.clip(progress, 0.0, 1.0)
-    path: Floats = s**3 * (10.0 + s * (6.0 * s - 15.0))
-    return path
+    return s**3 * (10.0 + s * (6.0 * s - 15.0))
 
 
 def human_reaches(seed: int = 1, duration_s: float = 20.0) -> Trajectory:
@@ -67,8 +66,7 @@ def _tremor(random: np.random.Generator, samples: int) -> Floats:
     spectrum[band] = random.normal(size=(int(band.sum()), JOINTS)) + 1j * random.normal(size=(int(band.sum()), JOINTS))
     noise = np.fft.irfft(spectrum, n=samples, axis=0)
     rms = np.sqrt(np.mean(noise**2, axis=0))
-    tremor: Floats = noise * (TREMOR_RAD / np.where(rms > 0.0, rms, 1.0))
-    return tremor
+    return noise * (TREMOR_RAD / np.where(rms > 0.0, rms, 1.0))
 
 
 def steps(

@@ -174,8 +174,7 @@ def chatter(duties: Duties, every: int, board: Board) -> Floats:
 
 def chatter_of_record(voltage: Floats, supply_v: float) -> Floats:
     """Large swings of the voltage (rows, 4) a second: (4,)."""
-    per_second: Floats = turns_of(voltage, CHATTER_SHARE * supply_v) / (len(voltage) * TICK_S)
-    return per_second
+    return turns_of(voltage, CHATTER_SHARE * supply_v) / (len(voltage) * TICK_S)
 
 
 # --- ripple -----------------------------------------------------------------------------------------------------------

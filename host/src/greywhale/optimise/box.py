@@ -76,5 +76,4 @@ def scatter(source: Source, count: int, dimensions: int) -> Floats:
 def latin_hypercube(source: Source, count: int, dimensions: int) -> Floats:
     """Points of the unit cube, one in each of `count` equal slices of every coordinate."""
     slices = np.argsort(source.random((count, dimensions)), axis=0, kind="stable")
-    points: Floats = (slices + source.random((count, dimensions))) / count
-    return points
+    return (slices + source.random((count, dimensions))) / count

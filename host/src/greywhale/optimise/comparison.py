@@ -94,8 +94,7 @@ class Comparison:
     @property
     def medians(self) -> Floats:
         """The medians for each function, setting and method."""
-        medians: Floats = np.median(self.costs, axis=3)
-        return medians
+        return np.median(self.costs, axis=3)
 
     def of(self, function: str, setting: Setting, method: str) -> Floats:
         """The costs of all runs of one method on one problem."""

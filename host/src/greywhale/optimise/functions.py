@@ -65,8 +65,7 @@ def place(function: Function, dimensions: int, setting: Setting, rng: np.random.
 def random_rotation(dimensions: int, rng: np.random.Generator) -> Floats:
     """An orthogonal matrix, uniform over all of them."""
     q, r = np.linalg.qr(rng.standard_normal((dimensions, dimensions)))
-    rotation: Floats = q * np.sign(np.diag(r))
-    return rotation
+    return q * np.sign(np.diag(r))
 
 
 def _sum(terms: Floats) -> Floats:

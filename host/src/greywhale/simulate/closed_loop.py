@@ -221,5 +221,4 @@ def shown_angles(angles: npt.NDArray[np.float32], plants: Plants, row_s: float) 
 
     Play and lag are in it; noise and a bent line are not.
     """
-    found: Floats = np.asarray(_native.shown_angles(angles=angles, plants=plants, row_s=row_s))
-    return found
+    return np.asarray(_native.shown_angles(angles=angles, plants=plants, row_s=row_s))

@@ -166,8 +166,7 @@ def _check_slices(slices: Floats) -> Floats:
 
 def _check_weight(weight: Floats | None, time_s: Floats, wait_s: float) -> Floats:
     if weight is None:
-        since: Floats = np.maximum(time_s - wait_s, 0.0)
-        return since
+        return np.maximum(time_s - wait_s, 0.0)
     if not isinstance(weight, np.ndarray) or weight.dtype != np.float64 or weight.shape != time_s.shape:
         raise UserError(
             f"weight_s must be a numpy array of float64 with one weight for each of the {len(time_s)} ticks."

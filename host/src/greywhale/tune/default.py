@@ -178,10 +178,7 @@ class DefaultMethod:
 
     def costs(self, controllers: Controllers) -> Floats:
         """The search's costs: (n, 4)."""
-        costs: Floats = self.objective.costs(controllers) + penalty(
-            self.margins.unrest(controllers), self.standard.quiet_v
-        )
-        return costs
+        return self.objective.costs(controllers) + penalty(self.margins.unrest(controllers), self.standard.quiet_v)
 
     def judge_costs(self, controllers: Controllers, exact: bool = False) -> Floats:
         """The same cost on all plants, with other noise; `exact`: in the bench's own arithmetic."""

@@ -148,8 +148,7 @@ def _torque_per_volt(plants: Floats) -> Floats:
 
 def _each(plants: Floats, name: str) -> Floats:
     """(n, 4)"""
-    found: Floats = plants[:, columns(name)]
-    return found
+    return plants[:, columns(name)]
 
 
 def _tuple(values: Floats) -> tuple[float, ...]:

@@ -112,8 +112,7 @@ def _answer(device: Device, weak: ParameterTable, joint: int) -> Floats:
 
 def _between(device: Device, weak: ParameterTable, joint: int, way: int) -> Floats:
     one, other = pulse(device, weak, joint, way), pulse(device, weak, joint, -way)
-    half: Floats = (one.moved - other.moved) / 2.0
-    return half
+    return (one.moved - other.moved) / 2.0
 
 
 def remarks(motors: Sequence[Motor], supply_v: float) -> tuple[str, ...]:

@@ -54,8 +54,7 @@ class Calibration:
 
     def angles(self, counts: Floats) -> Floats:
         """(..., 8) rad of counts (..., 8)."""
-        angles: Floats = (counts - self.zero) * self.scale
-        return angles
+        return (counts - self.zero) * self.scale
 
     def changes(self) -> dict[str, int]:
         """Raw values by parameter name; a joint that is not in use gets a scale of 0 at both arms. Raises UserError

@@ -100,8 +100,7 @@ class _Motion:
                 moved[:, self.joint] += _STEP
                 still = np.zeros_like(self.q)
                 change = self.body.bias(moved, still) - self.body.bias(self.q, still)
-                gained: Floats = alpha * change[:, self.joint] / _STEP
-                return gained
+                return alpha * change[:, self.joint] / _STEP
             case _:  # gap and teeth move the joint without a voltage; drag acts inside the gap only, and hardly shows
                 return np.zeros(len(speed))
 
@@ -112,12 +111,10 @@ class _Motion:
         """(rows,) by which a unit of the searched number moves the joint against its motor: backlash, bending teeth."""
         stiffness = self._of("stiffness")
         if kind == "teeth" and stiffness > 0.0:
-            bend: Floats = -self.torque / stiffness
-            return bend
+            return -self.torque / stiffness
         if kind != "gap":
             return np.zeros(len(self.a))
-        side: Floats = np.tanh(self.torque / max(1e-3, 0.02 * float(np.abs(self.torque).max())))
-        return side
+        return np.tanh(self.torque / max(1e-3, 0.02 * float(np.abs(self.torque).max())))
 
 
 def _windows(values: Floats, rows: int) -> Floats:

@@ -49,8 +49,7 @@ class Shape:
         """(joints, sines) Hz, even over the octaves. No two joints share one, so that they can be told apart."""
         lowest = max(LOWEST_HZ, 1.0 / self.seconds)
         place = (np.arange(SINES)[None, :] + np.arange(JOINTS)[:, None] / JOINTS) / (SINES - 1 + 0.75)
-        hertz: Floats = lowest * (HIGHEST_HZ / lowest) ** place
-        return hertz
+        return lowest * (HIGHEST_HZ / lowest) ** place
 
     @property
     def time_s(self) -> Floats:
@@ -82,8 +81,7 @@ class Shape:
         for middle in self.seconds * (np.arange(count) + 0.5) / max(count, 1):
             near = np.abs(time_s - middle) / (PAUSE_S / 2.0)
             pace *= minimum_jerk(2.0 * near - 1.0)
-        played: Floats = np.cumsum(pace) * POINT_S
-        return played
+        return np.cumsum(pace) * POINT_S
 
     def trajectory(self, angles: Floats) -> Trajectory:
         return Trajectory(self.time_s, angles)
@@ -107,5 +105,4 @@ def board_reference(angles: Floats) -> Floats:
     middle = (points[:-2] + points[1:-1]) / 2.0
     share = (np.arange(1, 17) / 16.0)[None, :, None]
     pieces = middle[:, None] + before[:, None] * share + (after - before)[:, None] * share**2 / 2.0
-    reference: Floats = pieces.reshape(-1, angles.shape[1])
-    return reference
+    return pieces.reshape(-1, angles.shape[1])

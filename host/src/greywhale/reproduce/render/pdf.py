@@ -111,8 +111,7 @@ class _Together(KeepTogether):
             if LEAST_SHARE <= share < 1.0:
                 image.drawWidth, image.drawHeight = share * image.drawWidth, share * image.drawHeight
                 return list(self._parts)
-        found: list[Any] = super().split(width, height)
-        return found
+        return super().split(width, height)
 
 
 def _chapter(chapter: Chapter) -> list[Any]:

@@ -78,8 +78,7 @@ def surface(rows: Controllers, joint: int, points: int = 201) -> Floats:
     law = Law(law.sets, np.ones_like(law.gains))
     y, x = np.meshgrid(np.linspace(-1.0, 1.0, points), np.linspace(-1.0, 1.0, points), indexing="ij")
     u, _ = law.fuzzy(*(np.repeat(one.ravel()[:, None], JOINTS, axis=1) for one in (x, y)))
-    found: Floats = u[:, 0].reshape(x.shape)
-    return found
+    return u[:, 0].reshape(x.shape)
 
 
 def follow(

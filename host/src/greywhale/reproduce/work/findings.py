@@ -178,16 +178,14 @@ def _combinations_by_values(search: PaperSearch, centre: Floats) -> Floats:
     names = ("torque_per_volt", "inertia", "damping")
     columns = [column(name, joint) for joint in range(JOINTS) for name in names]
     logs = np.log(search.plants(points)[:, columns])
-    found: Floats = ((logs[: len(centre)] - logs[len(centre) :]) / (2.0 * small)).T
-    return found
+    return ((logs[: len(centre)] - logs[len(centre) :]) / (2.0 * small)).T
 
 
 def _sensitivity(loop: Loop, plants: Floats, step: float) -> Floats:
     """(rows x 4, values): how the angles change with the logarithm of each value."""
     angles = loop.angles(plants, threads=1).reshape(len(plants), -1)
     half = len(plants) // 2
-    found: Floats = ((angles[:half] - angles[half:]) / (2.0 * step)).T
-    return found
+    return ((angles[:half] - angles[half:]) / (2.0 * step)).T
 
 
 def _scale(plant: Floats, joint: int, which: int, factor: float) -> None:

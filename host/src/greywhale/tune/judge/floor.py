@@ -168,8 +168,7 @@ class _Loop:
         """A joint's angles (ticks,) at full voltage in `direction` as far as `until`, its gear without a gap."""
         tight = self.plant.copy()
         tight[column("half_gap", joint)] = 0.0
-        angles: Floats = self._simulate(tight, tunings[None], joint, direction, until, True)[1][0, :, joint]
-        return angles
+        return self._simulate(tight, tunings[None], joint, direction, until, True)[1][0, :, joint]
 
     def _simulate(
         self, plant: Floats, tunings: Floats, chased: int, direction: NDArray[np.int8], until: Floats, keep: bool

@@ -115,10 +115,7 @@ class Unrest:
 
     @property
     def fails(self) -> npt.NDArray[np.bool_]:
-        failing: npt.NDArray[np.bool_] = (
-            (self.reversals >= LIMIT_CYCLE.turns) | (self.chatter > CHATTER_AT_REST_HZ) | self.lost
-        )
-        return failing
+        return (self.reversals >= LIMIT_CYCLE.turns) | (self.chatter > CHATTER_AT_REST_HZ) | self.lost
 
 
 def _part(found: Unrest, plants: slice) -> Unrest:

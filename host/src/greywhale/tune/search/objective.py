@@ -61,8 +61,7 @@ def pair_with_plants(controllers: Controllers, plants: Floats) -> tuple[Controll
 
 def error_of(weighted: Floats, square: Floats) -> Floats:
     """The error in rad, of the weighted mean of |e| and the mean of e^2."""
-    error: Floats = weighted + RMS * np.sqrt(square)
-    return error
+    return weighted + RMS * np.sqrt(square)
 
 
 @dataclass(frozen=True)
@@ -117,8 +116,7 @@ def relative_costs(found: FollowingErrors, scale: ErrorScale, supply_v: float) -
     length = avoidable + RATTLE * (found.rattle + LOUDER * louder)
     unbearable = np.maximum(found.chatter / CHATTER_MOVING_HZ - BEARABLE, 0.0)
     share = length / scale.room + CHATTER * unbearable + EFFORT * found.volts / supply_v
-    costs: Floats = np.sqrt(share)
-    return costs
+    return np.sqrt(share)
 
 
 def follow(

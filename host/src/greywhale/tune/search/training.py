@@ -189,8 +189,7 @@ def time_since_move(motion: Trajectory, wait_s: float) -> Floats:
     """The weight (s) of every tick of an Experiment that waits `wait_s`; 0 while it waits."""
     time_s, moving = moving_ticks(motion, wait_s)
     last = np.maximum.accumulate(np.where(moving, time_s, 0.0))
-    weight: Floats = np.where(time_s < 0.0, 0.0, SOON_S + time_s - last)
-    return weight
+    return np.where(time_s < 0.0, 0.0, SOON_S + time_s - last)
 
 
 def moving_ticks(motion: Trajectory, wait_s: float) -> tuple[Floats, NDArray[np.bool_]]:
@@ -204,5 +203,4 @@ def moving_ticks(motion: Trajectory, wait_s: float) -> tuple[Floats, NDArray[np.
 def _equal_weight(motion: Trajectory, wait_s: float) -> Floats:
     """The same weight for every tick of an Experiment that waits `wait_s`; 0 while it waits."""
     ticks = int(np.ceil((wait_s + motion.duration_s) / 1e-3 - 1e-9))
-    weight: Floats = np.where(np.arange(ticks) * 1e-3 < wait_s, 0.0, 1.0)
-    return weight
+    return np.where(np.arange(ticks) * 1e-3 < wait_s, 0.0, 1.0)
