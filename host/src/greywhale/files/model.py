@@ -8,19 +8,13 @@ from collections.abc import Mapping
 from typing import Any
 
 from greywhale.arm import ArmParameters
+from greywhale.base.formats import toml_text
 
 
 def to_toml(arm: ArmParameters, identification: Mapping[str, Any]) -> str:
     """The text of a model.toml."""
     head = "Written by greywhale identify. An arm file like any other, with one table more: [identification]."
-    lines = ["", "[identification]"]
-    lines += [f"{key} = {_value(value)}" for key, value in identification.items() if not _is_table_array(value)]
-    for key, value in identification.items():
-        if _is_table_array(value):
-            for one in value:
-                lines += ["", f"[[identification.{key}]]"]
-                lines += [f"{name} = {_value(item)}" for name, item in one.items()]
-    return arm_toml(arm, head) + "\n".join(lines) + "\n"
+    return "\n".join([arm_toml(arm, head), *toml_text.table("identification", identification), ""])
 
 
 def sealed(arm: ArmParameters, identification: Mapping[str, Any]) -> dict[str, Any]:
@@ -56,30 +50,9 @@ def arm_toml(arm: ArmParameters, head: str) -> str:
     data = arm.model_dump(exclude={"identification"})
     tables = {key: value for key, value in data.items() if isinstance(value, dict | list | tuple)}
     lines = [f"# {head}", ""]
-    lines += [f"{key} = {_value(value)}" for key, value in data.items() if key not in tables]
+    lines += [f"{key} = {toml_text.value(value)}" for key, value in data.items() if key not in tables]
     for key, value in tables.items():
         for one in value if isinstance(value, list | tuple) else [value]:
             header = f"[[{key}]]" if isinstance(value, list | tuple) else f"[{key}]"
-            lines += ["", header, *(f"{name} = {_value(item)}" for name, item in one.items())]
+            lines += ["", header, *(f"{name} = {toml_text.value(item)}" for name, item in one.items())]
     return "\n".join(lines) + "\n"
-
-
-def _is_table_array(value: object) -> bool:
-    return isinstance(value, list) and bool(value) and isinstance(value[0], Mapping)
-
-
-def _value(value: object) -> str:
-    if isinstance(value, bool):
-        return "true" if value else "false"
-    if isinstance(value, str):
-        return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
-    if isinstance(value, int):
-        return str(value)
-    if isinstance(value, float):
-        return repr(value)
-    if isinstance(value, Mapping):
-        pairs = (f"{key if key.isidentifier() else json.dumps(key)} = {_value(item)}" for key, item in value.items())
-        return "{ " + ", ".join(pairs) + " }" if value else "{}"
-    if isinstance(value, list | tuple):
-        return "[" + ", ".join(_value(item) for item in value) + "]"
-    raise TypeError(f"{value!r} has no form in TOML")

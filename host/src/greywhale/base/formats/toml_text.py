@@ -23,7 +23,8 @@ def value(thing: object) -> str:
     if isinstance(thing, float):
         return repr(thing) if math.isfinite(thing) else f"{thing:+}".replace("+nan", "nan")
     if isinstance(thing, Mapping):
-        return "{ " + ", ".join(f"{key(name)} = {value(item)}" for name, item in thing.items()) + " }"
+        inside = ", ".join(f"{key(name)} = {value(item)}" for name, item in thing.items())
+        return f"{{ {inside} }}" if inside else "{}"
     if isinstance(thing, list | tuple):
         return "[" + ", ".join(value(item) for item in thing) + "]"
     raise TypeError(f"{thing!r} has no form in TOML")
