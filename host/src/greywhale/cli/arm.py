@@ -16,7 +16,7 @@ from greywhale.base.types import PerJoint
 from greywhale.cli.arm_match import match
 from greywhale.cli.arm_new import new
 from greywhale.cli.group import Group
-from greywhale.cli.output import json_option, overwrite_option, show
+from greywhale.cli.output import FILE, json_option, option, overwrite_option, show
 from greywhale.files.model import arm_toml
 from greywhale.files.outputs import require_new
 
@@ -40,9 +40,9 @@ command.add_command(match)
 
 
 @command.command("import")
-@click.argument("urdf", type=click.Path(path_type=Path))
-@click.option("--out", "-o", type=click.Path(path_type=Path), default=Path("arm.toml"), show_default=True)
-@click.option("--supply", default=15.0, show_default=True, help="The motors' supply, V.")
+@click.argument("urdf", type=FILE)
+@option("--out", "-o", type=FILE, default="arm.toml")
+@option("--supply", default=15.0, help="The motors' supply, V.")
 @overwrite_option
 @json_option(ImportAnswer)
 def import_(urdf: Path, out: Path, supply: float, overwrite: bool, as_json: bool) -> None:

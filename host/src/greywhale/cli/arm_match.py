@@ -11,7 +11,7 @@ import numpy as np
 from greywhale.arm.parameters import JOINT_NAMES
 from greywhale.base.formats.whole import refuse_inputs, write_text
 from greywhale.base.types import PerJoint
-from greywhale.cli.output import json_option, overwrite_option, port_option, show
+from greywhale.cli.output import FILE, json_option, option, overwrite_option, port_option, show
 from greywhale.files.arm import load_arm
 from greywhale.files.model import arm_toml
 from greywhale.files.outputs import require_new
@@ -30,7 +30,7 @@ class MatchAnswer(TypedDict):
 @click.command("match")
 @click.argument("arm")
 @port_option
-@click.option("--out", "-o", type=click.Path(path_type=Path), default=Path("matched.toml"), show_default=True)
+@option("--out", "-o", type=FILE, default="matched.toml")
 @overwrite_option
 @json_option(MatchAnswer)
 def match(arm: str, port: str | None, out: Path, overwrite: bool, as_json: bool) -> None:

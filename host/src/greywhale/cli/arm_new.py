@@ -19,7 +19,7 @@ from greywhale.arm.make.questions import Answers, Question, collect
 from greywhale.arm.parameters import JOINT_NAMES, ArmParameters
 from greywhale.base.errors import UserError, counted
 from greywhale.base.formats.whole import refuse_inputs, write_text
-from greywhale.cli.output import json_option, overwrite_option, show, tell
+from greywhale.cli.output import FILE, json_option, option, overwrite_option, show, tell
 from greywhale.files.model import arm_toml
 from greywhale.files.outputs import require_new
 from greywhale.protocol.table import ParameterTable
@@ -46,8 +46,8 @@ class NewAnswer(TypedDict):
 
 
 @click.command("new")
-@click.option("--answers", type=click.Path(path_type=Path), metavar="FILE", help="TOML with the answers, for scripts.")
-@click.option("--out", "-o", type=click.Path(path_type=Path), default=Path("arm.toml"), show_default=True)
+@option("--answers", type=FILE, metavar="FILE", help="TOML with the answers, for scripts.")
+@option("--out", "-o", type=FILE, default="arm.toml")
 @overwrite_option
 @json_option(NewAnswer)
 def new(answers: Path | None, out: Path, overwrite: bool, as_json: bool) -> None:

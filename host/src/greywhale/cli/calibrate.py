@@ -18,7 +18,7 @@ from greywhale.board.calibrate.solve import Calibration
 from greywhale.board.device import Device
 from greywhale.board.pots import FULL_SCALE, POTS
 from greywhale.board.upload import upload_set
-from greywhale.cli.output import OnPort, json_option, overwrite_option, port_option, show
+from greywhale.cli.output import FILE, OnPort, json_option, option, overwrite_option, port_option, show
 from greywhale.cli.person import Terminal
 from greywhale.files import parameter_file
 from greywhale.files.outputs import require_new
@@ -52,19 +52,13 @@ class Answer(OnPort):
 
 @click.command("calibrate")
 @port_option
-@click.option("--joints", "in_use", metavar="LIST", default="0,1,2,3", show_default=True, help="The joints in use.")
-@click.option("--first", metavar="A0,A1,A2,A3", default="0,0,0,0", show_default=True, help="The first pose, degrees.")
-@click.option("--second", metavar="A0,A1,A2,A3", help="A second known pose, degrees; then the tracks' length is found.")
-@click.option("--track", default=300.0, show_default=True, help="The tracks' length, degrees, without a second pose.")
-@click.option(
-    "--backup",
-    type=click.Path(path_type=Path),
-    default=Path("before-calibration.toml"),
-    show_default=True,
-    help="Where the parameters from before are kept.",
-)
-@click.option("--no-motors", is_flag=True, help="Leave the motors alone; motor_sign stays as it is.")
-@click.option("--yes", "-y", is_flag=True, help="Store the result without asking.")
+@option("--joints", "in_use", metavar="LIST", default="0,1,2,3", help="The joints in use.")
+@option("--first", metavar="A0,A1,A2,A3", default="0,0,0,0", help="The first pose, degrees.")
+@option("--second", metavar="A0,A1,A2,A3", help="A second known pose, degrees; then the tracks' length is found.")
+@option("--track", default=300.0, help="The tracks' length, degrees, without a second pose.")
+@option("--backup", type=FILE, default="before-calibration.toml", help="Where the parameters from before are kept.")
+@option("--no-motors", is_flag=True, help="Leave the motors alone; motor_sign stays as it is.")
+@option("--yes", "-y", is_flag=True, help="Store the result without asking.")
 @overwrite_option
 @json_option(Answer)
 def command(

@@ -10,41 +10,33 @@ from greywhale.base.errors import BAD_USAGE, MOST_SEED, MOST_WORKERS, UserError
 from greywhale.board.session import Session
 from greywhale.cli import completion
 from greywhale.cli.countdown import prepare_motion, yes_option
-from greywhale.cli.output import json_option, port_option, progress, show
+from greywhale.cli.output import FILE, json_option, option, port_option, progress, show
 from greywhale.files.outputs import require_folder
 from greywhale.protocol.ports import choose_port
 
-EXISTING = click.Path(path_type=Path)
-
 
 @click.command("commission")
-@click.option("--out", "-o", type=EXISTING, default=Path("commission"), show_default=True, help="Folder for all files.")
-@click.option(
+@option("--out", "-o", type=FILE, default="commission", help="Folder for all files.")
+@option(
     "--arm",
     "arm_file",
     shell_complete=completion.arms,
     help="Your arm.toml: geometry, nominal motors.  [default: the model's arm, or white_box]",
 )
-@click.option("--model", type=EXISTING, help="A model.toml of this arm to begin with, instead of identifying first.")
-@click.option(
+@option("--model", type=FILE, help="A model.toml of this arm to begin with, instead of identifying first.")
+@option(
     "--range",
     "ranges",
     multiple=True,
     metavar="J:MIN:MAX",
     help="Range of a joint in rad, instead of 1 rad to either side of where it is.",
 )
-@click.option("--rounds", type=click.IntRange(1, 20), default=2, show_default=True, help="Models to make at most.")
-@click.option(
-    "--trials", type=click.IntRange(1, 100), default=8, show_default=True, help="Sets to try on the arm in each round."
-)
-@click.option(
-    "--budget", type=click.IntRange(1, 1_000_000), help="Evaluations of `tune`; without it, as many as it tries."
-)
-@click.option(
-    "--seed", type=click.IntRange(0, MOST_SEED), default=0, show_default=True, help="Where all random numbers start."
-)
-@click.option("--workers", type=click.IntRange(1, MOST_WORKERS), help="Threads; without it, one for every processor.")
-@click.option("--resume", is_flag=True, help="Go on where an interrupted commissioning in this folder ended.")
+@option("--rounds", type=click.IntRange(1, 20), default=2, help="Models to make at most.")
+@option("--trials", type=click.IntRange(1, 100), default=8, help="Sets to try on the arm in each round.")
+@option("--budget", type=click.IntRange(1, 1_000_000), help="Evaluations of `tune`; without it, as many as it tries.")
+@option("--seed", type=click.IntRange(0, MOST_SEED), default=0, help="Where all random numbers start.")
+@option("--workers", type=click.IntRange(1, MOST_WORKERS), help="Threads; without it, one for every processor.")
+@option("--resume", is_flag=True, help="Go on where an interrupted commissioning in this folder ended.")
 @yes_option
 @port_option
 @json_option("greywhale.commission.result:Answer")

@@ -9,8 +9,7 @@ import click
 
 from greywhale.base.errors import BAD_USAGE, UserError
 from greywhale.base.study import choose_workers
-from greywhale.cli.output import json_option, overwrite_option, progress, show
-from greywhale.cli.workers import results_option, workers_option
+from greywhale.cli.output import FILE, json_option, option, overwrite_option, progress, show, workers_option
 from greywhale.files.outputs import require_new
 from greywhale.optimise.comparison import Plan, compare
 from greywhale.optimise.comparison_report import ComparisonFacts, as_dict, check_format, text, write_report
@@ -26,30 +25,29 @@ class Answer(ComparisonFacts):
 
 
 @click.command("compare")
-@click.option("--functions", metavar="NAME,...", help=f"Which functions; without it all: {', '.join(FUNCTIONS)}.")
-@click.option(
+@option("--functions", metavar="NAME,...", help=f"Which functions; without it all: {', '.join(FUNCTIONS)}.")
+@option(
     "--methods",
     metavar="NAME,...",
     help=f"Which methods; without it {', '.join(METHODS)}. With greywhale[peers] also {', '.join(PEERS)}.",
 )
-@click.option(
+@option(
     "--settings",
     metavar="NAME,...",
     default="plain,shifted",
-    show_default=True,
     help="Where the minimum lies: plain (as published), shifted (away from the origin), rotated (shifted and turned).",
 )
-@click.option("--dimensions", type=int, default=10, show_default=True, help="Coordinates of every function.")
-@click.option("--budget", type=int, default=500, show_default=True, help="Evaluations of every run.")
-@click.option("--seeds", type=int, default=25, show_default=True, help="Runs of every method on every function.")
-@click.option("--pack", type=int, help="Pack of every method; without it, each method's own.")
-@click.option("--seed", type=int, default=0, show_default=True, help="Where all random numbers start.")
+@option("--dimensions", type=int, default=10, help="Coordinates of every function.")
+@option("--budget", type=int, default=500, help="Evaluations of every run.")
+@option("--seeds", type=int, default=25, help="Runs of every method on every function.")
+@option("--pack", type=int, help="Pack of every method; without it, each method's own.")
+@option("--seed", type=int, default=0, help="Where all random numbers start.")
 @workers_option("--jobs")
-@results_option
-@click.option(
+@option("--results", type=FILE, help="Keep here what is done; the same command goes on from it after Ctrl-C or a kill.")
+@option(
     "--out",
     "-o",
-    type=click.Path(path_type=Path),
+    type=FILE,
     multiple=True,
     help="Write all runs (.csv) or a picture of the ranks (.png, .svg, .pdf); may be given more than once.",
 )

@@ -20,7 +20,7 @@ from greywhale.base import bench_process, processes
 from greywhale.base.errors import BAD_USAGE, UserError
 from greywhale.cli import completion
 from greywhale.cli.bench import need_bench
-from greywhale.cli.output import json_of, json_option, port_option, tell
+from greywhale.cli.output import FILE, json_of, json_option, option, port_option, tell
 from greywhale.files.arm import load_arm
 
 
@@ -29,23 +29,22 @@ class Answer(TypedDict):
 
 
 @click.command("dashboard")
-@click.option("--sim", is_flag=True, help="Start the simulated bench with it.")
-@click.option("--board", type=click.Choice(["mega", "nano"]), default="mega", show_default=True, help="With --sim.")
-@click.option(
+@option("--sim", is_flag=True, help="Start the simulated bench with it.")
+@option("--board", type=click.Choice(["mega", "nano"]), default="mega", help="With --sim.")
+@option(
     "--arm",
-    type=click.Path(path_type=Path),
+    type=FILE,
     shell_complete=completion.arms,
     help="TOML with the arm that is drawn and predicted, and simulated with --sim; without it, the built-in one.",
 )
-@click.option(
+@option(
     "--folder",
     type=click.Path(path_type=Path, file_okay=False, exists=True),
-    default=Path("."),
-    show_default=True,
+    default=".",
     help="Where the page's verbs read and write files; they reach no other folder.",
 )
-@click.option("--browser/--no-browser", default=True, show_default=True, help="Open the page in the browser.")
-@click.option("--http-port", type=click.IntRange(0, 65535), default=0, help="Port of the page; 0 is any free one.")
+@option("--browser/--no-browser", default=True, help="Open the page in the browser.")
+@option("--http-port", type=click.IntRange(0, 65535), default=0, help="Port of the page; 0 is any free one.")
 @port_option
 @json_option(Answer)
 @click.pass_context

@@ -9,7 +9,7 @@ import click
 from greywhale.base.errors import MOST_SEED
 from greywhale.cli import completion
 from greywhale.cli.bench import need_bench
-from greywhale.cli.output import json_option, progress, show, warn
+from greywhale.cli.output import FILE, json_option, option, progress, show, warn
 from greywhale.files import controller as controller_file
 from greywhale.files.arm import load_arm
 from greywhale.files.leader import load_leader
@@ -17,41 +17,26 @@ from greywhale.files.outputs import require_folder
 
 
 @click.command("demo")
-@click.option(
-    "--out",
-    "-o",
-    type=click.Path(path_type=Path),
-    default=Path("demo"),
-    show_default=True,
-    help="Folder for logs and pictures.",
-)
-@click.option(
-    "--leader", type=click.Path(path_type=Path), help="CSV with the leader's motion; without it, a generated one."
-)
-@click.option(
-    "--board", type=click.Choice(["mega", "nano"]), default="mega", show_default=True, help="The simulated board."
-)
-@click.option("--arm", type=click.Path(path_type=Path), help="TOML with the arm; without it, the built-in one.")
-@click.option("--speed", type=click.Choice(["1", "max"]), default="max", show_default=True, help="Real time or faster.")
-@click.option("--duration", type=float, default=20.0, show_default=True, help="Seconds of generated motion.")
-@click.option(
-    "--seed", type=click.IntRange(0, MOST_SEED), default=1, show_default=True, help="Seed of the generated motion."
-)
-@click.option(
+@option("--out", "-o", type=FILE, default="demo", help="Folder for logs and pictures.")
+@option("--leader", type=FILE, help="CSV with the leader's motion; without it, a generated one.")
+@option("--board", type=click.Choice(["mega", "nano"]), default="mega", help="The simulated board.")
+@option("--arm", type=FILE, help="TOML with the arm; without it, the built-in one.")
+@option("--speed", type=click.Choice(["1", "max"]), default="max", help="Real time or faster.")
+@option("--duration", type=float, default=20.0, help="Seconds of generated motion.")
+@option("--seed", type=click.IntRange(0, MOST_SEED), default=1, help="Seed of the generated motion.")
+@option(
     "--controller",
-    type=click.Path(path_type=Path),
+    type=FILE,
     shell_complete=completion.controllers,
     help="Show this controller.toml instead of identifying and tuning.",
 )
-@click.option(
-    "--practice", type=float, default=20.0, show_default=True, help="Seconds of motion to identify the arm from."
-)
-@click.option(
+@option("--practice", type=float, default=20.0, help="Seconds of motion to identify the arm from.")
+@option(
     "--budget",
     type=click.IntRange(1, 1_000_000),
     help="Controllers tried for each joint; without it, as many as `tune` tries.",
 )
-@click.option("--prove", is_flag=True, help="Also prove the tuned controllers on the arm, as `commission` does.")
+@option("--prove", is_flag=True, help="Also prove the tuned controllers on the arm, as `commission` does.")
 @json_option("greywhale.cli.story.result:Answer")
 def command(
     out: Path,

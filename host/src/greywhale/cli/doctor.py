@@ -10,7 +10,7 @@ from greywhale.base.errors import BAD_USAGE, UserError, counted
 from greywhale.base.types import show_no_progress
 from greywhale.board.doctor import Finding, Options, Verdict, examine, worst
 from greywhale.board.doctor.examine import LINK_S
-from greywhale.cli.output import OnPort, json_option, port_option, progress, show
+from greywhale.cli.output import FILE, OnPort, json_option, option, port_option, progress, show
 from greywhale.protocol.ports import choose_port
 
 LONGEST_S = 3600.0
@@ -25,17 +25,13 @@ class Answer(OnPort):
 
 @click.command("doctor")
 @port_option
-@click.option(
-    "--params", type=click.Path(path_type=Path), metavar="FILE", help="A parameter file that the board should run."
-)
-@click.option("--seconds", default=LINK_S, show_default=True, help="How long the link is loaded.")
-@click.option("--supply", type=float, metavar="VOLTS", help="What you measured at the motors' supply.")
-@click.option(
+@option("--params", type=FILE, metavar="FILE", help="A parameter file that the board should run.")
+@option("--seconds", default=LINK_S, help="How long the link is loaded.")
+@option("--supply", type=float, metavar="VOLTS", help="What you measured at the motors' supply.")
+@option(
     "--image", is_flag=True, help="Also read the firmware back and compare it with the shipped one; the board restarts."
 )
-@click.option(
-    "--hex", "hex_file", type=click.Path(path_type=Path), metavar="FILE", help="With --image: compare with this file."
-)
+@option("--hex", "hex_file", type=FILE, metavar="FILE", help="With --image: compare with this file.")
 @json_option(Answer)
 @click.pass_context
 def command(

@@ -9,7 +9,7 @@ import click
 
 from greywhale.base.errors import counted
 from greywhale.base.formats.whole import refuse_inputs
-from greywhale.cli.output import json_option, overwrite_option, show
+from greywhale.cli.output import FILE, json_option, option, overwrite_option, show
 from greywhale.files.log import Log, read_log
 from greywhale.files.log.check import Check
 from greywhale.files.log.condition import Gap
@@ -38,10 +38,8 @@ class Answer(TypedDict):
 
 
 @click.command("evaluate")
-@click.argument("logs", metavar="LOG...", nargs=-1, required=True, type=click.Path(path_type=Path))
-@click.option(
-    "--picture", type=click.Path(path_type=Path), help="Draw angles, errors and voltages (.png, .svg or .pdf)."
-)
+@click.argument("logs", metavar="LOG...", nargs=-1, required=True, type=FILE)
+@option("--picture", type=FILE, help="Draw angles, errors and voltages (.png, .svg or .pdf).")
 @overwrite_option
 @json_option(Answer)
 def command(logs: tuple[Path, ...], picture: Path | None, overwrite: bool, as_json: bool) -> None:

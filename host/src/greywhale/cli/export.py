@@ -9,7 +9,7 @@ import click
 
 from greywhale.base.formats.whole import refuse_inputs, write_text
 from greywhale.cli import completion
-from greywhale.cli.output import json_option, overwrite_option, show
+from greywhale.cli.output import FILE, json_option, option, overwrite_option, show
 from greywhale.files.outputs import require_new
 
 
@@ -18,17 +18,17 @@ class Answer(TypedDict):
 
 
 @click.command("export")
-@click.option(
+@option(
     "--fis",
     metavar="CONTROLLER.toml",
-    type=click.Path(path_type=Path),
+    type=FILE,
     shell_complete=completion.controllers,
     help="A controller for MATLAB.",
 )
-@click.option("--urdf", metavar="ARM.toml", help="An arm for ROS, Pinocchio and others.")
-@click.option("--mjcf", metavar="ARM.toml", help="An arm for MuJoCo.")
-@click.option("--out", "-o", required=True, type=click.Path(path_type=Path), help="The file to write.")
-@click.option("--joint", type=click.IntRange(0, 3), help="With --fis: this joint only, into OUT itself.")
+@option("--urdf", metavar="ARM.toml", help="An arm for ROS, Pinocchio and others.")
+@option("--mjcf", metavar="ARM.toml", help="An arm for MuJoCo.")
+@option("--out", "-o", required=True, type=FILE, help="The file to write.")
+@option("--joint", type=click.IntRange(0, 3), help="With --fis: this joint only, into OUT itself.")
 @overwrite_option
 @json_option(Answer)
 def command(

@@ -9,7 +9,7 @@ import click
 from greywhale.base.types import Crc
 from greywhale.board.device import version
 from greywhale.board.flash import BOARDS, flash
-from greywhale.cli.output import OnPort, json_option, port_option, progress, show
+from greywhale.cli.output import FILE, OnPort, json_option, option, port_option, progress, show
 from greywhale.protocol.ports import choose_port
 
 
@@ -20,13 +20,9 @@ class Answer(OnPort):
 
 
 @click.command("flash")
-@click.option(
-    "--board", type=click.Choice(list(BOARDS)), help="The board; without it, the port or the bootloader tells."
-)
-@click.option(
-    "--firmware", type=click.Path(path_type=Path), help="Folder of firmware source (with platformio.ini) to build."
-)
-@click.option("--hex", "hex_file", type=click.Path(path_type=Path), help="Upload this HEX file.")
+@option("--board", type=click.Choice(list(BOARDS)), help="The board; without it, the port or the bootloader tells.")
+@option("--firmware", type=FILE, help="Folder of firmware source (with platformio.ini) to build.")
+@option("--hex", "hex_file", type=FILE, help="Upload this HEX file.")
 @port_option
 @json_option(Answer)
 def command(board: str | None, firmware: Path | None, hex_file: Path | None, port: str | None, as_json: bool) -> None:

@@ -9,7 +9,7 @@ import click
 from greywhale.base.errors import MOST_SEED
 from greywhale.base.formats.whole import refuse_inputs
 from greywhale.cli import completion
-from greywhale.cli.output import json_option, overwrite_option, progress, show
+from greywhale.cli.output import FILE, json_option, option, overwrite_option, progress, show
 from greywhale.files.arm import load_arm
 from greywhale.files.log import Log, read_log
 from greywhale.files.log.selection import MOST_S, informative
@@ -25,37 +25,34 @@ class Answer(ResultFacts):
 
 
 @click.command("identify")
-@click.argument("logs", metavar="LOG...", nargs=-1, required=True, type=click.Path(path_type=Path))
-@click.option(
+@click.argument("logs", metavar="LOG...", nargs=-1, required=True, type=FILE)
+@option(
     "--validate",
     "-v",
-    type=click.Path(path_type=Path),
+    type=FILE,
     multiple=True,
     help="A log that only judges the model; best are one of the same and one of another controller.",
 )
-@click.option(
+@option(
     "--arm",
     "arm_file",
     default="white_box",
-    show_default=True,
     shell_complete=completion.arms,
     help="Your arm.toml: geometry, nominal motors.",
 )
-@click.option("--out", "-o", type=click.Path(path_type=Path), default=Path("model.toml"), show_default=True)
-@click.option(
+@option("--out", "-o", type=FILE, default="model.toml")
+@option(
     "--controller",
     "-c",
     "controllers",
-    type=click.Path(path_type=Path),
+    type=FILE,
     shell_complete=completion.controllers,
     multiple=True,
     help="A controller.toml or `params backup` file that logs were recorded with; logs find theirs by its CRC.",
 )
-@click.option("--method", type=click.Choice(METHODS), default="default", show_default=True)
-@click.option(
-    "--seed", type=click.IntRange(0, MOST_SEED), default=0, show_default=True, help="Where all random numbers start."
-)
-@click.option("--pictures", type=click.Path(path_type=Path), help="Folder for pictures of responses and convergence.")
+@option("--method", type=click.Choice(METHODS), default="default")
+@option("--seed", type=click.IntRange(0, MOST_SEED), default=0, help="Where all random numbers start.")
+@option("--pictures", type=FILE, help="Folder for pictures of responses and convergence.")
 @overwrite_option
 @json_option(Answer)
 def command(

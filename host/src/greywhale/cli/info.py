@@ -14,7 +14,7 @@ from greywhale.board.doctor.board import EEPROM_WRITES
 from greywhale.board.pots import POTS, PotReadings, read_pots
 from greywhale.board.refusal import fault_text, pot_name
 from greywhale.board.upload import read_parameters
-from greywhale.cli.output import OnPort, json_option, port_option, show
+from greywhale.cli.output import OnPort, json_option, option, port_option, show
 from greywhale.protocol import schema
 from greywhale.protocol.ports import choose_port
 
@@ -55,8 +55,8 @@ class Answer(OnPort):
 
 
 @click.command("info")
-@click.option("--watch", is_flag=True, help="Show angles, errors, voltages and faults as they are, until Ctrl-C.")
-@click.option("--seconds", "-s", type=click.FloatRange(min=0.0), help="With --watch: end after so long.")
+@option("--watch", is_flag=True, help="Show angles, errors, voltages and faults as they are, until Ctrl-C.")
+@option("--seconds", "-s", type=click.FloatRange(min=0.0), help="With --watch: end after so long.")
 @port_option
 @json_option(Answer)
 def command(watch: bool, seconds: float | None, port: str | None, as_json: bool) -> None:

@@ -8,11 +8,12 @@ import logging
 import sys
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping
+from pathlib import Path
 from typing import Any, TypedDict, TypeVar
 
 import click
 
-from greywhale.base.errors import printable
+from greywhale.base.errors import MOST_WORKERS, printable
 from greywhale.base.types import NotedProgress
 from greywhale.cli import completion, tracing
 from greywhale.cli.wrapping import fit
@@ -23,10 +24,16 @@ logger = logging.getLogger(__name__)
 # Who gets the reports of a verb that runs for a page, in the place of a terminal.
 watcher: NotedProgress | None = None
 Command = TypeVar("Command", bound=Callable[..., Any])
+FILE = click.Path(path_type=Path)
 
 
 class OnPort(TypedDict):
     port: str  # the serial port that was used
+
+
+def option(*names: str, **settings: Any) -> Callable[[Command], Command]:
+    """click's option, whose help says the default."""
+    return click.option(*names, show_default="default" in settings, **settings)
 
 
 def json_option(answer: object) -> Callable[[Command], Command]:
@@ -37,6 +44,17 @@ def json_option(answer: object) -> Callable[[Command], Command]:
         return click.option("--json", "as_json", is_flag=True, help="Print exactly one JSON object on stdout.")(command)
 
     return add
+
+
+def workers_option(*names: str) -> Callable[[Command], Command]:
+    """--workers, which `base.study.choose_workers` takes; `names` are other names of it."""
+    return option(
+        "--workers",
+        *names,
+        "workers",
+        type=click.IntRange(1, MOST_WORKERS),
+        help="Processes; without it, one for every processor. The result is the same.",
+    )
 
 
 def overwrite_option(command: Command) -> Command:

@@ -16,7 +16,7 @@ from greywhale.board.device import Device
 from greywhale.board.upload import UploadFacts, change_parameters, read_parameters
 from greywhale.cli import completion
 from greywhale.cli.group import Group
-from greywhale.cli.output import OnPort, json_option, overwrite_option, port_option, progress, show
+from greywhale.cli.output import FILE, OnPort, json_option, overwrite_option, port_option, progress, show
 from greywhale.files import parameter_file
 from greywhale.files.names import did_you_mean
 from greywhale.files.outputs import require_new
@@ -102,7 +102,7 @@ def set_(settings: tuple[str, ...], port: str | None, as_json: bool) -> None:
 
 
 @command.command("backup")
-@click.argument("file", type=click.Path(path_type=Path))
+@click.argument("file", type=FILE)
 @port_option
 @overwrite_option
 @json_option(BackupAnswer)
@@ -117,7 +117,7 @@ def backup(file: Path, port: str | None, overwrite: bool, as_json: bool) -> None
 
 
 @command.command("restore")
-@click.argument("file", type=click.Path(path_type=Path))
+@click.argument("file", type=FILE)
 @port_option
 @json_option(RestoreAnswer)
 def restore(file: Path, port: str | None, as_json: bool) -> None:
@@ -130,7 +130,7 @@ def restore(file: Path, port: str | None, as_json: bool) -> None:
 
 
 @command.command("diff")
-@click.argument("file", type=click.Path(path_type=Path))
+@click.argument("file", type=FILE)
 @port_option
 @json_option(DiffAnswer)
 def diff(file: Path, port: str | None, as_json: bool) -> None:

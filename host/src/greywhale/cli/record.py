@@ -27,7 +27,7 @@ from greywhale.board.record import (
 from greywhale.board.upload import read_parameters
 from greywhale.cli import completion
 from greywhale.cli.countdown import prepare_motion, yes_option
-from greywhale.cli.output import OnPort, json_option, overwrite_option, port_option, progress, show
+from greywhale.cli.output import FILE, OnPort, json_option, option, overwrite_option, port_option, progress, show
 from greywhale.files.leader import save_leader
 from greywhale.files.outputs import require_new
 from greywhale.protocol.ports import choose_port
@@ -68,49 +68,37 @@ class ExciteAnswer(OnPort, LedRecordingFacts, Saved):
 
 
 @click.command("record")
-@click.option(
-    "--out", "-o", type=click.Path(path_type=Path), default=Path("log.csv"), show_default=True, help="The log."
+@option("--out", "-o", type=FILE, default="log.csv", help="The log.")
+@option("--seconds", "-s", type=float, help="Length, by the board's clock.  [default: 10; with --excite: 20]")
+@option("--every", type=int, default=1, help="One sample every so many ticks of 1 ms.")
+@option("--enable", is_flag=True, help="Turn the motors on: the follower follows while the log is recorded.")
+@option(
+    "--disengaged", is_flag=True, help="With --enable: begin with the clutch disengaged, so the leader may be anywhere."
 )
-@click.option("--seconds", "-s", type=float, help="Length, by the board's clock.  [default: 10; with --excite: 20]")
-@click.option("--every", type=int, default=1, show_default=True, help="One sample every so many ticks of 1 ms.")
-@click.option("--enable", is_flag=True, help="Turn the motors on: the follower follows while the log is recorded.")
-@click.option(
-    "--disengaged",
-    is_flag=True,
-    help="With --enable: begin with the clutch disengaged, so the leader may be anywhere.",
-)
-@click.option(
+@option(
     "--reconnect",
     is_flag=True,
     help="Motors off: if the port goes away, wait for it until the end of --seconds, and go on after the gap.",
 )
-@click.option(
-    "--excite", is_flag=True, help="Turn the motors on and lead the arm along the motion that shows most about it."
-)
-@click.option(
+@option("--excite", is_flag=True, help="Turn the motors on and lead the arm along the motion that shows most about it.")
+@option(
     "--arm",
     "arm_file",
     shell_complete=completion.arms,
     help="With --excite: your arm.toml or a model.toml.  [default: white_box]",
 )
-@click.option(
+@option(
     "--range",
     "ranges",
     multiple=True,
     metavar="J:MIN:MAX",
     help="With --excite: range of a joint in rad, instead of 1 rad to either side of where it is.",
 )
-@click.option(
-    "--seed", type=click.IntRange(0, MOST_SEED), help="With --excite: another seed, another motion.  [default: 0]"
-)
-@click.option(
+@option("--seed", type=click.IntRange(0, MOST_SEED), help="With --excite: another seed, another motion.  [default: 0]")
+@option(
     "--budget", type=int, help="With --excite: motions to try; more take longer and show a little more.  [default: 300]"
 )
-@click.option(
-    "--save-motion",
-    type=click.Path(path_type=Path),
-    help="With --excite: also write the motion, for `replay` or `sim --leader`.",
-)
+@option("--save-motion", type=FILE, help="With --excite: also write the motion, for `replay` or `sim --leader`.")
 @overwrite_option
 @yes_option
 @port_option

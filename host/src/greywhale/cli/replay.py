@@ -11,7 +11,7 @@ from greywhale.base.formats.whole import refuse_inputs
 from greywhale.board.device import Device
 from greywhale.board.record import LedRecordingFacts, check_every_led, record_led
 from greywhale.cli.countdown import prepare_motion, yes_option
-from greywhale.cli.output import OnPort, json_option, overwrite_option, port_option, progress, show, warn
+from greywhale.cli.output import FILE, OnPort, json_option, option, overwrite_option, port_option, progress, show, warn
 from greywhale.cli.record import describe
 from greywhale.files.leader import load_leader
 from greywhale.files.names import suggesting
@@ -32,11 +32,9 @@ class Answer(OnPort, LedRecordingFacts):
 
 
 @click.command("replay")
-@click.argument("motion", metavar="FILE", type=click.Path(path_type=Path))
-@click.option(
-    "--out", "-o", type=click.Path(path_type=Path), default=Path("log.csv"), show_default=True, help="The log."
-)
-@click.option("--every", type=int, default=1, show_default=True, help="One sample every so many ticks of 1 ms.")
+@click.argument("motion", metavar="FILE", type=FILE)
+@option("--out", "-o", type=FILE, default="log.csv", help="The log.")
+@option("--every", type=int, default=1, help="One sample every so many ticks of 1 ms.")
 @overwrite_option
 @yes_option
 @port_option

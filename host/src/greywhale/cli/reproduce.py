@@ -9,8 +9,7 @@ from typing import Annotated, TypedDict
 import click
 
 from greywhale.cli.bench import need_bench
-from greywhale.cli.output import json_option, progress, show
-from greywhale.cli.workers import workers_option
+from greywhale.cli.output import FILE, json_option, option, progress, show, workers_option
 from greywhale.files.outputs import require_folder
 from greywhale.reproduce.request import Request
 
@@ -24,17 +23,10 @@ class Answer(TypedDict):
 
 
 @click.command("reproduce")
-@click.option(
-    "--out",
-    "-o",
-    type=click.Path(path_type=Path),
-    default=Path("reproduce"),
-    show_default=True,
-    help="Folder for the report and the results of its parts.",
-)
-@click.option("--quick", is_flag=True, help="Fewer seeds, shorter logs, smaller budgets: a look at everything.")
-@click.option("--seeds", type=int, help="Runs of everything random; without it 10, with --quick 4.")
-@click.option("--seed", type=int, default=0, show_default=True, help="The first of them.")
+@option("--out", "-o", type=FILE, default="reproduce", help="Folder for the report and the results of its parts.")
+@option("--quick", is_flag=True, help="Fewer seeds, shorter logs, smaller budgets: a look at everything.")
+@option("--seeds", type=int, help="Runs of everything random; without it 10, with --quick 4.")
+@option("--seed", type=int, default=0, help="The first of them.")
 @workers_option()
 @json_option(Answer)
 def command(out: Path, quick: bool, seeds: int | None, seed: int, workers: int | None, as_json: bool) -> None:

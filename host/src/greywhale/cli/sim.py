@@ -9,7 +9,7 @@ from typing import TypedDict
 import click
 
 from greywhale.cli.bench import need_bench
-from greywhale.cli.output import json_option, show, tell, warn
+from greywhale.cli.output import FILE, json_option, option, show, tell, warn
 from greywhale.files.leader import load_leader
 from greywhale.protocol.ports import lasting_name
 
@@ -23,18 +23,18 @@ class Mistakes(TypedDict):
 
 
 @click.command("sim")
-@click.option("--board", type=click.Choice(["mega", "nano"]), default="mega", show_default=True, help="The board.")
-@click.option("--leader", type=click.Path(path_type=Path), help="CSV with the leader's motion.")
-@click.option("--arm", type=click.Path(path_type=Path), help="TOML with the arm; without it, the built-in one.")
-@click.option("--driver", default="drv8838", show_default=True, help="The motor drivers' chip; a wrong name lists all.")
-@click.option("--speed", type=click.Choice(["1", "max"]), default="1", show_default=True, help="Real time or faster.")
-@click.option("--eeprom", type=click.Path(path_type=Path), help="File that keeps the EEPROM between starts.")
-@click.option("--firmware", type=click.Path(path_type=Path), help="HEX file to start with, as if flashed.")
-@click.option("--blank", is_flag=True, help="Start with nothing but the bootloader.")
-@click.option(
+@option("--board", type=click.Choice(["mega", "nano"]), default="mega", help="The board.")
+@option("--leader", type=FILE, help="CSV with the leader's motion.")
+@option("--arm", type=FILE, help="TOML with the arm; without it, the built-in one.")
+@option("--driver", default="drv8838", help="The motor drivers' chip; a wrong name lists all.")
+@option("--speed", type=click.Choice(["1", "max"]), default="1", help="Real time or faster.")
+@option("--eeprom", type=FILE, help="File that keeps the EEPROM between starts.")
+@option("--firmware", type=FILE, help="HEX file to start with, as if flashed.")
+@option("--blank", is_flag=True, help="Start with nothing but the bootloader.")
+@option(
     "--mistake", multiple=True, metavar="NAME", help="Wire it wrongly, NAME or NAME:PLACE; `--mistake list` names all."
 )
-@click.option("--by-hand", is_flag=True, help="Be the person: type `turn leader 0`, `hold 30`; `help` lists all.")
+@option("--by-hand", is_flag=True, help="Be the person: type `turn leader 0`, `hold 30`; `help` lists all.")
 @json_option(Port | Mistakes)
 def command(
     board: str,

@@ -9,7 +9,7 @@ import click
 from greywhale.base.errors import UserError
 from greywhale.board.device import Device
 from greywhale.board.session import ask_to_stop
-from greywhale.cli.output import OnPort, json_option, port_option, show
+from greywhale.cli.output import OnPort, json_option, option, port_option, show
 from greywhale.protocol import schema
 from greywhale.protocol.ports import choose_port
 from greywhale.protocol.transport import PortBusyError
@@ -22,7 +22,7 @@ class Answer(OnPort):
 
 
 @click.command("stop")
-@click.option("--clear-fault", is_flag=True, help="Also leave the fault state, if the cause has gone.")
+@option("--clear-fault", is_flag=True, help="Also leave the fault state, if the cause has gone.")
 @port_option
 @json_option(Answer)
 def command(clear_fault: bool, port: str | None, as_json: bool) -> None:

@@ -11,7 +11,7 @@ import click
 from greywhale.base.errors import BAD_USAGE, MOST_WORKERS, UserError, require_within
 from greywhale.base.formats.whole import refuse_inputs
 from greywhale.cli import completion
-from greywhale.cli.output import json_option, overwrite_option, progress, show
+from greywhale.cli.output import FILE, json_option, option, overwrite_option, progress, show
 from greywhale.files import controller as controller_file
 from greywhale.files.outputs import require_files, require_folder, require_new, require_no_files
 from greywhale.simulate import controller_row
@@ -24,7 +24,6 @@ from greywhale.tune.result import TuningFacts
 from greywhale.tune.search.space import NAMES
 
 GIVEN_NAMES = {name.lower(): name for name in NAMES}
-EXISTING = click.Path(path_type=Path)
 
 
 class Layouts(TypedDict):
@@ -38,57 +37,48 @@ class Answer(TuningFacts, Layouts):
 
 @click.command("tune")
 @click.argument("model_file", metavar="MODEL")
-@click.option("--out", "-o", type=EXISTING, default=Path("controller.toml"), show_default=True)
-@click.option(
+@option("--out", "-o", type=FILE, default="controller.toml")
+@option(
     "--strategy",
     type=click.Choice(STRATEGIES),
     default="both",
-    show_default=True,
     help="What is searched: membership functions, scaling factors, or both.",
 )
-@click.option(
+@option(
     "--method",
     type=click.Choice(METHODS),
     default="default",
-    show_default=True,
     metavar="NAME",
     help=f"default, paper (its objective, bounds and budget), or an optimiser: {', '.join(METHODS[2:])}.",
 )
-@click.option("--budget", type=int, help="Evaluations of every joint's controller; without it, the method's own.")
-@click.option("--seed", type=int, default=0, show_default=True, help="Where all random numbers start.")
-@click.option("--workers", type=int, help="Threads; without it, one for every processor.")
-@click.option(
+@option("--budget", type=int, help="Evaluations of every joint's controller; without it, the method's own.")
+@option("--seed", type=int, default=0, help="Where all random numbers start.")
+@option("--workers", type=int, help="Threads; without it, one for every processor.")
+@option(
     "--start",
-    type=EXISTING,
+    type=FILE,
     shell_complete=completion.controllers,
     help="A controller.toml to begin with, or before_tuning; without it, what the board of the logs ran.",
 )
-@click.option(
+@option(
     "--bounds",
     multiple=True,
     metavar="NAME=LOW..HIGH",
     help="Narrow what is searched, in the file's units, for all joints: Ku=3..9. May be given more than once.",
 )
-@click.option(
-    "--arm", shell_complete=completion.arms, help="Your arm.toml, to make sure that the model is of this arm."
-)
-@click.option(
-    "--params", type=EXISTING, help="The board's table (`params backup`); without it, that of the model's logs."
-)
-@click.option(
-    "--samples", type=int, default=SAMPLES, show_default=True, help="Arms as likely as the model, itself among them."
-)
-@click.option(
+@option("--arm", shell_complete=completion.arms, help="Your arm.toml, to make sure that the model is of this arm.")
+@option("--params", type=FILE, help="The board's table (`params backup`); without it, that of the model's logs.")
+@option("--samples", type=int, default=SAMPLES, help="Arms as likely as the model, itself among them.")
+@option(
     "--quiet",
     type=click.FloatRange(0.25, 4.0),
     default=1.0,
-    show_default=True,
     help="2 halves the hiss that is allowed at rest, 0.5 doubles it; quieter motors follow less closely.",
 )
-@click.option("--resume", is_flag=True, help="Go on where an interrupted tuning with the same options ended.")
-@click.option("--force", is_flag=True, help="Tune even if there are doubts about the model; the result states them.")
-@click.option("--tables", is_flag=True, help="Also print the paper's Tables 8 to 12: ours beside the printed.")
-@click.option("--pictures", type=EXISTING, help="Folder for pictures of sets, responses and convergence.")
+@option("--resume", is_flag=True, help="Go on where an interrupted tuning with the same options ended.")
+@option("--force", is_flag=True, help="Tune even if there are doubts about the model; the result states them.")
+@option("--tables", is_flag=True, help="Also print the paper's Tables 8 to 12: ours beside the printed.")
+@option("--pictures", type=FILE, help="Folder for pictures of sets, responses and convergence.")
 @overwrite_option
 @json_option(Answer)
 def command(

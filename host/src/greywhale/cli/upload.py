@@ -13,7 +13,7 @@ from greywhale.base.errors import UserError, counted
 from greywhale.board.device import Device
 from greywhale.board.upload import UploadFacts, change_parameters, read_parameters
 from greywhale.cli import completion
-from greywhale.cli.output import OnPort, json_option, port_option, progress, show, tell
+from greywhale.cli.output import FILE, OnPort, json_option, option, port_option, progress, show, tell
 from greywhale.files import controller as controller_file
 from greywhale.protocol.ports import choose_port
 from greywhale.protocol.table import ParameterTable
@@ -28,8 +28,8 @@ class Answer(OnPort, UploadFacts):
 
 
 @click.command("upload")
-@click.argument("controller", type=click.Path(path_type=Path), shell_complete=completion.controllers)
-@click.option("--yes", "-y", is_flag=True, help="Store it without a question, also where a joint may swing.")
+@click.argument("controller", type=FILE, shell_complete=completion.controllers)
+@option("--yes", "-y", is_flag=True, help="Store it without a question, also where a joint may swing.")
 @port_option
 @json_option(Answer)
 def command(controller: Path, yes: bool, port: str | None, as_json: bool) -> None:

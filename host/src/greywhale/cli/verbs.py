@@ -9,7 +9,7 @@ import click
 
 from greywhale.cli import tracing
 from greywhale.cli.group import Group
-from greywhale.cli.output import QUIET
+from greywhale.cli.output import FILE, QUIET, option
 
 # verb -> (module in this folder, what it does)
 VERBS = {
@@ -61,14 +61,9 @@ class Verbs(Group):
 
 @click.group(cls=Verbs, context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
 @click.version_option(package_name="greywhale", prog_name="greywhale")
-@click.option("--verbose", "-v", count=True, help="Tell on stderr what is being done; -vv: every request too.")
-@click.option("--quiet", "-q", is_flag=True, help="Show no progress; errors, warnings and results stay.")
-@click.option(
-    "--log-file",
-    type=click.Path(path_type=Path),
-    metavar="FILE",
-    help="Append all of that to a file, for a bug report.",
-)
+@option("--verbose", "-v", count=True, help="Tell on stderr what is being done; -vv: every request too.")
+@option("--quiet", "-q", is_flag=True, help="Show no progress; errors, warnings and results stay.")
+@option("--log-file", type=FILE, metavar="FILE", help="Append all of that to a file, for a bug report.")
 @click.pass_context
 def greywhale(context: click.Context, verbose: int, quiet: bool, log_file: Path | None) -> None:
     """Identify, tune and run leader-follower robot arms. Every verb has --help and --json;
