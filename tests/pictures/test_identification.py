@@ -8,6 +8,8 @@ from matplotlib.figure import Figure
 
 from greywhale.motion import multi_steps
 from greywhale.pictures import identification as pictures
+from greywhale.pictures import looks
+from greywhale.pictures.identification import Trace
 from greywhale.pictures.page import style
 from tests.pictures.sight import faults
 
@@ -15,9 +17,12 @@ from tests.pictures.sight import faults
 def responses(begun: str = "white box", joints: tuple[int, ...] = (0, 1, 2, 3)) -> Figure:
     time = np.arange(0.0, 16.0, 0.01)
     leader = multi_steps().at(time)
-    simulated = {begun: 0.93 * leader, "model": 0.991 * leader}
     said = ["MSE [rad²]: white box 0.000123,\nmodel 1.23e-05"] * 4
-    return pictures.plot_responses(time, leader, 0.99 * leader, simulated, said, "fit (another controller)", joints)
+    recorded = Trace("recorded follower", time, 0.99 * leader, looks.FOLLOWER)
+    simulated = [Trace(begun, time, 0.93 * leader, looks.WHITE_BOX), Trace("model", time, 0.991 * leader, looks.MODEL)]
+    traces = [Trace("leader", time, leader, looks.LEADER), recorded, *simulated]
+    title, error = "fit (another controller)", "recorded less simulated"
+    return pictures.plot_responses(traces, recorded, title, error, joints=joints, said=said)
 
 
 @pytest.mark.slow
@@ -25,7 +30,7 @@ def responses(begun: str = "white box", joints: tuple[int, ...] = (0, 1, 2, 3)) 
 def test_nothing_is_cut_off_overlaps_or_lacks_a_unit(name: str) -> None:
     with style():
         costs = tuple(0.5 * 0.8**step for step in range(50))
-        figure = responses() if name == "responses" else pictures.plot_convergence(costs, "paper-printed")
+        figure = responses() if name == "responses" else pictures.plot_convergence({"": costs}, "paper", looks.MODEL)
         assert faults(figure) == []
 
 

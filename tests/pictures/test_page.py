@@ -15,7 +15,6 @@ from greywhale.pictures import looks
 from greywhale.pictures.kinds import KINDS, kind_of
 from greywhale.pictures.names import distinct_names
 from greywhale.pictures.page import (
-    COLUMN,
     WIDE,
     leave,
     legend_below,
@@ -29,7 +28,7 @@ from tests.pictures.sight import faults
 
 
 def simple() -> Figure:
-    figure, axes = plt.subplots(figsize=(COLUMN, 2.0))
+    figure, axes = plt.subplots(figsize=(WIDE / 2.0, 2.0))
     figure.subplots_adjust(**leave(figure, 0.6, 0.1, 0.45, 0.1))
     axes.plot([0.0, 1.0], [1.0, 2.0], **looks.BEFORE.line)
     axes.set_xlabel("time [s]")

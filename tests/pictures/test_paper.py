@@ -14,8 +14,8 @@ from greywhale.motion import multi_steps
 from greywhale.pictures import looks
 from greywhale.pictures import paper_curves as curves
 from greywhale.pictures import paper_diagrams as diagrams
+from greywhale.pictures.identification import LARGEST_ERROR, Trace, plot_responses
 from greywhale.pictures.page import style
-from greywhale.pictures.paper_curves import Trace
 from greywhale.reproduce.pages.optimisers import SAID
 from greywhale.reproduce.work.errata import surface
 from greywhale.reproduce.work.motions import printed
@@ -51,7 +51,7 @@ FIGURES: dict[str, Draw] = {
     "responses": responses,
     "close up": lambda: responses(window=(1.3, 2.7)),
     "convergence": lambda: curves.convergence(
-        {"seed 0": [9.0, 1.0, 0.02], "seed 1": [9.0, 2.0, 0.03]}, "Identification", "best summed MSE [rad²]", "seed 0"
+        {"seed 0": [9.0, 1.0, 0.02], "seed 1": [9.0, 2.0, 0.03]}, "Identification"
     ),
     "convergence of joints": lambda: curves.convergence_of_joints(joints(), "Tuning the sets", 10),
     "sets before": lambda: curves.sets_before(printed("before_tuning")),
@@ -97,13 +97,13 @@ def test_nothing_is_cut_off_overlaps_or_lacks_a_unit(name: str, monkeypatch: pyt
 def test_the_errors_are_the_differences_and_what_leaves_the_panel_is_marked() -> None:
     drawn = traces()
     with style():
-        figure = curves.plot_responses(drawn, drawn[0], "Title", "leader less follower")
+        figure = plot_responses(drawn, drawn[0], "Title", "leader less follower")
     angle, strip = figure.axes[:2]
     assert [line.get_color() for line in angle.get_lines()] == [one.look.colour for one in drawn]
     for line, one in zip(strip.get_lines(), drawn[1:], strict=False):
         np.testing.assert_allclose(np.asarray(line.get_ydata()), drawn[0].angles[:, 0] - one.angles[:, 0])
         assert (line.get_color(), line.get_linestyle()) == (one.look.colour, one.look.style)
-    assert strip.get_ylim() == (-curves.LARGEST_ERROR, curves.LARGEST_ERROR)
+    assert strip.get_ylim() == (-LARGEST_ERROR, LARGEST_ERROR)
     words = [text.get_text() for text in figure.legends[0].get_texts()]
     assert words[4] == "error: leader less follower"
     assert words[5].startswith("beyond ±0.2 rad (up to ")

@@ -18,7 +18,7 @@ from greywhale.motion import multi_steps, steps
 from greywhale.pictures import page
 from greywhale.pictures import paper_curves as curves
 from greywhale.pictures import paper_diagrams as diagrams
-from greywhale.pictures.paper_curves import Trace
+from greywhale.pictures.identification import Trace
 from greywhale.protocol.table import ParameterTable
 from greywhale.reproduce.work import bench, errata, findings, on_the_bench, optimisers, readings
 from greywhale.reproduce.work.arms import DEFAULT, file_of

@@ -7,7 +7,8 @@ from pathlib import Path
 from greywhale.identify.closed_loop import COMPARED_TICKS, Loop
 from greywhale.identify.judge import JudgedLog, LogVerdict
 from greywhale.identify.result import IdentificationResult
-from greywhale.pictures.identification import plot_convergence, plot_responses
+from greywhale.pictures import looks
+from greywhale.pictures.identification import Trace, plot_convergence, plot_responses
 from greywhale.pictures.names import distinct_names
 from greywhale.pictures.page import save_into, style
 from greywhale.pictures.plotting import Figure
@@ -19,7 +20,8 @@ def draw(outcome: IdentificationResult, folder: Path) -> list[Path]:
     written = []
     with style():
         if outcome.found.curve:
-            figure = plot_convergence(outcome.found.curve, outcome.method)
+            title = f"Identification, method {outcome.method}"
+            figure = plot_convergence({"": outcome.found.curve}, title, looks.MODEL)
             written.append(save_into(figure, folder, "convergence.png"))
         names = distinct_names([one.name for one in outcome.verdicts])
         for number, (subject, verdict) in enumerate(zip(outcome.subjects, outcome.verdicts, strict=True), 1):
@@ -40,7 +42,12 @@ def _responses(outcome: IdentificationResult, subject: JudgedLog, verdict: LogVe
         f"MSE [rad²]: {outcome.begun} {before:.2g},\nmodel {after:.2g}"
         for before, after in zip(verdict.white_box, verdict.model, strict=True)
     ]
-    curves = {outcome.begun: white, "model": model}
-    title = f"{name} ({verdict.role}); error: recorded less simulated"
-    joints = outcome.white_box.joints_in_use
-    return plot_responses(loop.time[rows], loop.leader[rows], loop.follower[rows], curves, said, title, joints)
+    time = loop.time[rows]
+    traces = (
+        Trace("leader", time, loop.leader[rows], looks.LEADER.thin(0.9)),
+        recorded := Trace("recorded follower", time, loop.follower[rows], looks.FOLLOWER),
+        Trace(outcome.begun, time, white, looks.WHITE_BOX),
+        Trace("model", time, model, looks.MODEL),
+    )
+    joints, title = outcome.white_box.joints_in_use, f"{name} ({verdict.role})"
+    return plot_responses(traces, recorded, title, "recorded less simulated", joints=joints, said=said)

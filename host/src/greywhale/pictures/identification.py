@@ -1,68 +1,118 @@
-"""Pictures of an identification: convergence (the paper's Fig. 6), responses of arm and models (Figs. 7-8)."""
+"""Responses of an arm and its models (the paper's Figs. 7-8, and others of that form), and convergence (Fig. 6)."""
 
 from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from greywhale.base.types import Floats
-from greywhale.pictures import looks
-from greywhale.pictures.page import COLUMN, JOINTS, WIDE, headline, leave, legend_below, make_logarithmic
-from greywhale.pictures.plotting import Figure, plt
+from greywhale.pictures.looks import DARK, GREY, Look
+from greywhale.pictures.page import (
+    JOINTS,
+    WIDE,
+    headline,
+    leave,
+    legend_below,
+    make_logarithmic,
+    mark_beyond,
+    mark_of_beyond,
+)
+from greywhale.pictures.plotting import Figure, Line2D, plt
 from greywhale.protocol.joints import ALL, Joints
 
+# Jumps would hide the error that is left after them (rad).
+LARGEST_ERROR = 0.2
 
-def plot_convergence(costs: tuple[float, ...], method: str) -> Figure:
-    """The best cost so far, rad², over iterations; one column wide."""
-    figure, axes = plt.subplots(figsize=(COLUMN, 2.5))
-    figure.subplots_adjust(**leave(figure, 0.7, 0.12, 0.42, 0.3))
-    axes.step(np.arange(len(costs)), costs, where="post", **looks.MODEL.line)
-    make_logarithmic(axes)
-    axes.set_xlabel("iteration")
-    axes.set_ylabel("best summed MSE [rad²]")
-    axes.set_title(f"Identification, method {method}")
-    return figure
+
+@dataclass(frozen=True)
+class Trace:
+    """Angles (rows, 4), rad, at times (rows,), s, and how they look."""
+
+    name: str
+    time: Any
+    angles: Any
+    look: Look
 
 
 def plot_responses(
-    time: Floats,
-    leader: Floats,
-    follower: Floats,
-    simulated: dict[str, Floats],
-    said: list[str],
+    traces: Sequence[Trace],
+    against: Trace,
     title: str,
+    error: str,
+    *,
+    window: tuple[float, float] | None = None,
     joints: Joints = ALL,
+    said: Sequence[str] = (),
 ) -> Figure:
-    """Angles (rows, 4) in rad at `time` (s): leader, follower and what was simulated, and below how far that is off.
+    """A panel a joint: these traces, and below how far those behind `against` are from it, which `error` says.
 
-    `simulated` are two arms by their names: what the search began with, and the model.
+    `said` stands below each joint's name. The figure is one of pyplot's, which the caller closes.
     """
     rows = (len(joints) + 1) // 2
-    figure = plt.figure(figsize=(WIDE, 6.7 if rows == 2 else 4.0))
+    figure = plt.figure(figsize=(WIDE, 0.9 + (2.9 if said else 2.1) * rows))
     headline(figure, title)
-    drawn = {
-        "leader": (leader, looks.LEADER.thin(0.9)),
-        "recorded follower": (follower, looks.FOLLOWER),
-    }
-    for (label, angles), look in zip(simulated.items(), (looks.WHITE_BOX, looks.MODEL), strict=True):
-        drawn[label] = angles, look
-    room = leave(figure, 0.67, 0.1, 0.62, 0.75)
-    grid = figure.add_gridspec(rows, 2, **room, wspace=0.29, hspace=0.38)
+    behind = list(traces)[list(traces).index(against) + 1 :]
+    first, last = window or (min(np.min(one.time) for one in traces), max(np.max(one.time) for one in traces))
+    off = {joint: [_off(one, against, joint, first, last) for one in behind] for joint in joints}
+    largest = max(float(np.abs(one[1]).max(initial=0.0)) for errors in off.values() for one in errors)
+    below = _label_responses(figure, traces, error, largest)
+    room = leave(figure, 0.67, 0.12, 0.46 + below, 0.75 if said else 0.48)
+    grid = figure.add_gridspec(rows, 2, **room, wspace=0.29, hspace=0.4)
     for place, joint in enumerate(joints):
         cells = grid[divmod(place, 2)].subgridspec(2, 1, height_ratios=(2.2, 1), hspace=0.07)
         angle = figure.add_subplot(cells[0])
-        error = figure.add_subplot(cells[1], sharex=angle)
-        for label, (angles, look) in drawn.items():
-            angle.plot(time, angles[:, joint], label=label, **look.line)
-        for label, angles in simulated.items():
-            error.plot(time, follower[:, joint] - angles[:, joint], **drawn[label][1].thin().line)
-        error.axhline(0.0, color=looks.DARK, linewidth=0.5)
-        angle.set_title(f"{JOINTS[joint]}\n{said[joint]}")
+        strip = figure.add_subplot(cells[1], sharex=angle)
+        for one in traces:
+            angle.plot(one.time, np.array(one.angles)[:, joint], **one.look.line)
+        angle.set_xlim(first, last)
+        for time, difference, look in off[joint]:
+            strip.plot(time, difference, **look.thin().line)
+        strip.axhline(0.0, color=DARK, linewidth=0.5)
+        mark_beyond(strip, LARGEST_ERROR, off[joint])
+        angle.set_title("\n".join([JOINTS[joint], *said[joint : joint + 1]]))
         angle.tick_params(labelbottom=False)
         angle.set_ylabel("angle [rad]")
-        angle.set_xlim(time[0], time[-1])
-        error.set_ylabel("error [rad]")
-        error.set_xlabel("time [s]")
-        figure.align_ylabels([angle, error])
-    handles, labels = angle.get_legend_handles_labels()
-    legend_below(figure, handles, labels)
+        strip.set_ylabel("error [rad]")
+        strip.set_xlabel("time [s]")
+        figure.align_ylabels([angle, strip])
+    return figure
+
+
+def _label_responses(figure: Figure, traces: Sequence[Trace], error: str, largest: float) -> float:
+    """The legend; its height in inches."""
+    handles = [Line2D([], [], **one.look.line) for one in traces]
+    labels = [one.name for one in traces]
+    handles.append(Line2D([], [], linestyle="none"))
+    labels.append(f"error: {error}")
+    if largest > LARGEST_ERROR:
+        handles.append(mark_of_beyond())
+        labels.append(f"beyond ±{LARGEST_ERROR:g} rad (up to {largest:.2g})")
+    return legend_below(figure, handles, labels)
+
+
+def _off(one: Trace, against: Trace, joint: int, first: float, last: float) -> tuple[Floats, Floats, Look]:
+    """How far a trace is from another at its own times, from the first to the last."""
+    time = np.asarray(one.time, dtype=np.float64)
+    seen = (time >= first) & (time <= last)
+    reference = np.interp(time[seen], np.asarray(against.time), np.array(against.angles)[:, joint])
+    return time[seen], reference - np.array(one.angles)[seen, joint], one.look
+
+
+def plot_convergence(curves: Mapping[str, Sequence[float]], title: str, look: Look) -> Figure:
+    """Best costs so far, rad², over iterations; the first curve is drawn as `look` says, the others pale."""
+    figure, axes = plt.subplots(figsize=(WIDE, 3.0))
+    figure.subplots_adjust(**leave(figure, 0.7, 0.12, 0.42, 0.3))
+    for place, (name, curve) in enumerate(curves.items()):
+        drawn = {"color": GREY, "linewidth": 0.6} if place else {**look.thin(1.5).line, "label": name, "zorder": 3}
+        axes.step(np.arange(len(curve)), curve, where="post", **drawn)
+    make_logarithmic(axes)
+    axes.set_xlabel("iteration")
+    axes.set_ylabel("best summed MSE [rad²]")
+    axes.set_title(title)
+    if len(curves) > 1:
+        axes.plot([], [], color=GREY, linewidth=0.6, label="other seeds")
+        axes.legend(frameon=False)
     return figure

@@ -35,7 +35,7 @@ from greywhale.pictures.plotting import (
 )
 
 INCH_CM = 2.54
-WIDE, COLUMN = 17.0 / INCH_CM, 8.5 / INCH_CM
+WIDE = 17.0 / INCH_CM
 DPI, DOCUMENT_DPI = 300, 200  # of files, and of pictures inside a document
 LETTERS, SMALL, HEADLINE = 8.0, 7.0, 9.5  # points
 JOINTS = tuple(f"Joint {joint}, {name}" for joint, name in enumerate(JOINT_NAMES))

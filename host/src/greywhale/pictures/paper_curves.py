@@ -1,17 +1,16 @@
-"""Pictures of the paper's report: responses, convergence, sets, control surfaces and ranks."""
+"""Pictures of the paper's report: responses, convergence, sets, control surfaces and ranks, each as a PNG."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
 from greywhale.base.types import Controllers, Floats
 from greywhale.fuzzy.settings import SET_UNIT
 from greywhale.pictures import looks
-from greywhale.pictures.looks import BLUE, DARK, GREEN, GREY, ORANGE, PURPLE, SIGNS, Look
+from greywhale.pictures.identification import Trace, plot_convergence, plot_responses
+from greywhale.pictures.looks import DARK, GREEN, GREY, SIGNS
 from greywhale.pictures.membership import draw_shapes
 from greywhale.pictures.page import JOINTS as JOINT_TITLES
 from greywhale.pictures.page import (
@@ -20,120 +19,33 @@ from greywhale.pictures.page import (
     headline,
     leave,
     legend_below,
-    make_logarithmic,
-    mark_beyond,
-    mark_of_beyond,
     png,
     style,
 )
-from greywhale.pictures.plotting import Figure, Line2D, plt
+from greywhale.pictures.plotting import Line2D, plt
+from greywhale.pictures.ranks import plot_ranks
 from greywhale.protocol.firmware import JOINTS
 from greywhale.simulate import CONTROLLER_COLUMNS
 
-# Jumps would hide the error that is left after them (rad).
-LARGEST_ERROR = 0.2
 J_WORDS = "J = ITAE [rad s²] + ITAU [V s²]"
 PAPER = looks.PAPERS_METHOD.colour
 _BAR = (0.9, 0.42 / 3.1, 0.02, 1.0 - (0.26 + 0.42) / 3.1)  # left, bottom, width, height
-BARS = (DARK, ORANGE, BLUE, GREEN, PURPLE)
 _E, _CE = ("ne_c", "ze_a", "ze_c", "pe_b"), ("nce_c", "zce_a", "zce_c", "pce_b")
 _SETS = {"e": ("NE", "ZE", "PE"), "ce": ("NCE", "ZCE", "PCE"), "u": ("NU", "ZU", "PU")}
-
-
-@dataclass(frozen=True)
-class Trace:
-    """Angles (rows, 4), rad, at times (rows,), s, and how they look."""
-
-    name: str
-    time: Any
-    angles: Any
-    look: Look
 
 
 def responses(
     traces: Sequence[Trace], against: Trace, title: str, error: str, *, window: tuple[float, float] | None = None
 ) -> bytes:
-    """Two by two panels: these traces, and below how far those behind `against` are from it, which `error` says."""
+    """What `plot_responses` draws."""
     with style():
         return png(plot_responses(traces, against, title, error, window=window))
 
 
-def plot_responses(
-    traces: Sequence[Trace], against: Trace, title: str, error: str, *, window: tuple[float, float] | None = None
-) -> Figure:
-    """What `responses` shows, as a figure of pyplot's that the caller closes."""
-    figure = plt.figure(figsize=(WIDE, 5.1))
-    headline(figure, title)
-    behind = list(traces)[list(traces).index(against) + 1 :]
-    first, last = window or (min(np.min(one.time) for one in traces), max(np.max(one.time) for one in traces))
-    off = [[_off(one, against, joint, first, last) for one in behind] for joint in range(JOINTS)]
-    largest = max(float(np.abs(one[1]).max(initial=0.0)) for joint in off for one in joint)
-    below = _label_responses(figure, traces, error, largest)
-    grid = figure.add_gridspec(2, 2, **leave(figure, 0.67, 0.12, 0.46 + below, 0.48), wspace=0.29, hspace=0.4)
-    for joint, name in enumerate(JOINT_TITLES):
-        cells = grid[divmod(joint, 2)].subgridspec(2, 1, height_ratios=(2.2, 1), hspace=0.07)
-        angle = figure.add_subplot(cells[0])
-        strip = figure.add_subplot(cells[1], sharex=angle)
-        for one in traces:
-            angle.plot(one.time, np.array(one.angles)[:, joint], **one.look.line)
-        angle.set_xlim(first, last)
-        for time, difference, look in off[joint]:
-            strip.plot(time, difference, **look.thin().line)
-        strip.axhline(0.0, color=DARK, linewidth=0.5)
-        mark_beyond(strip, LARGEST_ERROR, off[joint])
-        angle.set_title(name)
-        angle.tick_params(labelbottom=False)
-        angle.set_ylabel("angle [rad]")
-        strip.set_ylabel("error [rad]")
-        strip.set_xlabel("time [s]")
-        figure.align_ylabels([angle, strip])
-    return figure
-
-
-def _label_responses(figure: Figure, traces: Sequence[Trace], error: str, largest: float) -> float:
-    """The legend; its height in inches."""
-    handles = [Line2D([], [], **one.look.line) for one in traces]
-    labels = [one.name for one in traces]
-    handles.append(Line2D([], [], linestyle="none"))
-    labels.append(f"error: {error}")
-    if largest > LARGEST_ERROR:
-        handles.append(mark_of_beyond())
-        labels.append(f"beyond ±{LARGEST_ERROR:g} rad (up to {largest:.2g})")
-    return legend_below(figure, handles, labels)
-
-
-def _off(one: Trace, against: Trace, joint: int, first: float, last: float) -> tuple[Floats, Floats, Look]:
-    """How far a trace is from another at its own times, from the first to the last."""
-    time = np.asarray(one.time, dtype=np.float64)
-    seen = (time >= first) & (time <= last)
-    reference = np.interp(time[seen], np.asarray(against.time), np.array(against.angles)[:, joint])
-    return time[seen], reference - np.array(one.angles)[seen, joint], one.look
-
-
-def convergence(curves: Mapping[str, Sequence[float]], title: str, y: str, first: str = "") -> bytes:
-    """Best costs so far over iterations in one panel; the curve `first` is drawn strong, the others pale."""
+def convergence(curves: Mapping[str, Sequence[float]], title: str) -> bytes:
+    """What `plot_convergence` draws."""
     with style():
-        figure, axes = plt.subplots(figsize=(WIDE, 3.0))
-        figure.subplots_adjust(**leave(figure, 0.6, 0.12, 0.42, 0.3))
-        for name, curve in curves.items():
-            strong = name == first
-            axes.step(
-                np.arange(len(curve)),
-                curve,
-                where="post",
-                color=PAPER if strong else GREY,
-                linewidth=1.5 if strong else 0.6,
-                label=name if strong else None,
-                zorder=3 if strong else 2,
-            )
-        make_logarithmic(axes)
-        axes.set_xlabel("iteration")
-        axes.set_ylabel(y)
-        axes.set_title(title)
-        if len(curves) > 1:
-            axes.plot([], [], color=GREY, linewidth=0.6, label="other seeds")
-        axes.legend(frameon=False)
-        return png(figure)
+        return png(plot_convergence(curves, title, looks.PAPERS_METHOD))
 
 
 def convergence_of_joints(runs: Sequence[Sequence[Mapping[str, Sequence[float]]]], title: str, agents: int) -> bytes:
@@ -268,22 +180,6 @@ def surfaces(outputs: Mapping[str, Floats]) -> bytes:
 
 
 def ranks(places: Mapping[str, Mapping[str, float]], title: str) -> bytes:
-    """Mean ranks of methods, a group of bars for each method; the shortest is best."""
-    problems = list(places)
-    methods = list(next(iter(places.values())))
+    """What `plot_ranks` draws."""
     with style():
-        figure, axes = plt.subplots(figsize=(WIDE, 4.4))
-        width = 0.8 / len(problems)
-        for number, (problem, colour) in enumerate(zip(problems, BARS, strict=False)):
-            at = np.arange(len(methods)) + (number - 0.5 * (len(problems) - 1)) * width
-            axes.barh(at, [places[problem][method] for method in methods], width, color=colour, label=problem)
-        axes.set_yticks(range(len(methods)), methods)
-        axes.invert_yaxis()
-        axes.margins(y=0.01)
-        axes.set_xlim(left=0.0)
-        axes.set_xlabel("mean rank (1 is best)")
-        axes.grid(axis="y", visible=False)
-        axes.set_title(title)
-        below = legend_below(figure, *axes.get_legend_handles_labels())
-        figure.subplots_adjust(**leave(figure, 1.9, 0.12, 0.42 + below, 0.28))
-        return png(figure)
+        return png(plot_ranks(places, title))

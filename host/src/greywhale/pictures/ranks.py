@@ -12,14 +12,15 @@ from greywhale.pictures.plotting import Axes, Figure, plt
 # Methods in a picture: dark and saturated colours first, then the same dashed.
 _COLOURS = (looks.BLUE, looks.ORANGE, looks.GREEN, looks.DARK, looks.PURPLE, looks.AMBER, looks.SKY, looks.GREY)
 _STYLES = ("-", "--", ":")
-_NAMES_IN, _NAME_HIGH_IN = 1.35, 0.15  # room for the methods' names, inches
+_LETTER_IN, _NAME_HIGH_IN = 0.066, 0.15  # room for the methods' names, inches
 
 
 def plot_ranks(ranks: Mapping[str, Mapping[str, float]], title: str) -> Figure:
     """Setting -> method -> mean rank; the names stand at the end, in a figure of pyplot's that the caller closes."""
     across, last = range(len(ranks)), list(ranks.values())[-1]
     figure, axes = plt.subplots(figsize=(WIDE, 0.9 + 0.36 * max(len(last), 6)))
-    figure.subplots_adjust(**leave(figure, 0.5, _NAMES_IN, 0.3, 0.32))
+    names_in = 0.3 + _LETTER_IN * max(map(len, last))
+    figure.subplots_adjust(**leave(figure, 0.5, names_in, 0.3, 0.32))
     for index, method in enumerate(last):
         colour = _COLOURS[index % len(_COLOURS)]
         style = _STYLES[index // len(_COLOURS) % len(_STYLES)]

@@ -7,7 +7,7 @@ from typing import Any
 
 from greywhale.pictures import looks
 from greywhale.pictures import paper_curves as curves
-from greywhale.pictures.paper_curves import Trace
+from greywhale.pictures.identification import Trace
 from greywhale.protocol.firmware import JOINTS
 from greywhale.reproduce.pages.document import Chapter, Entry, Picture, Row, Sheet, Status, sheet, words
 from greywhale.reproduce.pages.found import Found

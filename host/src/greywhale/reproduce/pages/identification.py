@@ -14,7 +14,7 @@ from greywhale.identify.paper import LOWER, UPPER, VALUES
 from greywhale.pictures import looks
 from greywhale.pictures import paper_curves as curves
 from greywhale.pictures import paper_diagrams as diagrams
-from greywhale.pictures.paper_curves import Trace
+from greywhale.pictures.identification import Trace
 from greywhale.reproduce.pages import identified
 from greywhale.reproduce.pages.document import Chapter, Code, Entry, Picture, Row, Sheet, Status, sheet, words
 from greywhale.reproduce.pages.found import Found
@@ -141,13 +141,7 @@ def _searched(estimates: Mapping[str, float]) -> list[dict[str, float]]:
 
 def _figure_6(found: Found) -> tuple[Any, ...]:
     runs = {f"seed {seed}": run["identified"]["curve"] for seed, run in _by_seed(found)}
-    first = next(iter(runs))
-    picture = curves.convergence(
-        {**runs, first: runs[first]},
-        "Identification by the paper's method on data set 1",
-        "best summed MSE [rad²]",
-        first,
-    )
+    picture = curves.convergence(runs, "Identification by the paper's method on data set 1")
     flat = [last_improvement(curve) for curve in runs.values()]
     return (
         Picture(picture, "Best cost so far; one line a seed."),

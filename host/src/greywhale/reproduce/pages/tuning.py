@@ -12,7 +12,7 @@ from greywhale.files.controller import load
 from greywhale.files.paper_tables import paper_table
 from greywhale.pictures import looks
 from greywhale.pictures import paper_curves as curves
-from greywhale.pictures.paper_curves import Trace
+from greywhale.pictures.identification import Trace
 from greywhale.protocol.firmware import JOINTS
 from greywhale.protocol.joints import named
 from greywhale.reproduce.pages.document import Chapter, Entry, Picture, Row, Sheet, Status, sheet, words
