@@ -1,11 +1,23 @@
-"""The shapes of one input's sets."""
+"""The shapes of one input's sets, and their corners."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 
+from greywhale.base.types import Controllers
+from greywhale.fuzzy.settings import SET_UNIT
 from greywhale.pictures import looks
 from greywhale.pictures.plotting import Axes
+from greywhale.simulate import CONTROLLER_COLUMNS
+
+# Of the error and of its change: left, the middle's two, right.
+_CORNERS = ("ne_c", "ze_a", "ze_c", "pe_b"), ("nce_c", "zce_a", "zce_c", "pce_b")
+
+
+def corners_of(controllers: Controllers, joint: int, change: bool) -> tuple[float, ...]:
+    """The corners of one input's sets: of the error, or of its change."""
+    columns = map(CONTROLLER_COLUMNS.index, _CORNERS[change])
+    return tuple(float(controllers[joint, column]) / SET_UNIT for column in columns)
 
 
 def draw_shapes(

@@ -1,8 +1,8 @@
-"""The paper that pictures are drawn for: its widths, its letters, legends, marks for what is cut off, and files.
+"""The paper that pictures are drawn for: its width, its letters, legends, marks for what is cut off, and files.
 
-A picture has the size that it has on paper: 17 cm (both columns) or 8.5 cm (one). The same numbers give the same file,
-byte for byte: no display, no date and no random identifier goes into it, and margins are fixed, because the results of
-a layout solver differ in the last digits from run to run.
+A picture has the size that it has on paper: 17 cm (both columns). The same numbers give the same file, byte for byte:
+no display, no date and no random identifier goes into it, and margins are fixed, because the results of a layout solver
+differ in the last digits from run to run.
 """
 
 from __future__ import annotations

@@ -7,11 +7,10 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from greywhale.base.types import Controllers, Floats
-from greywhale.fuzzy.settings import SET_UNIT
 from greywhale.pictures import looks
 from greywhale.pictures.identification import Trace, plot_convergence, plot_responses
 from greywhale.pictures.looks import DARK, GREEN, GREY, SIGNS
-from greywhale.pictures.membership import draw_shapes
+from greywhale.pictures.membership import corners_of, draw_shapes
 from greywhale.pictures.page import JOINTS as JOINT_TITLES
 from greywhale.pictures.page import (
     SMALL,
@@ -25,12 +24,10 @@ from greywhale.pictures.page import (
 from greywhale.pictures.plotting import Line2D, plt
 from greywhale.pictures.ranks import plot_ranks
 from greywhale.protocol.firmware import JOINTS
-from greywhale.simulate import CONTROLLER_COLUMNS
 
 J_WORDS = "J = ITAE [rad s²] + ITAU [V s²]"
 PAPER = looks.PAPERS_METHOD.colour
 _BAR = (0.9, 0.42 / 3.1, 0.02, 1.0 - (0.26 + 0.42) / 3.1)  # left, bottom, width, height
-_E, _CE = ("ne_c", "ze_a", "ze_c", "pe_b"), ("nce_c", "zce_a", "zce_c", "pce_b")
 _SETS = {"e": ("NE", "ZE", "PE"), "ce": ("NCE", "ZCE", "PCE"), "u": ("NU", "ZU", "PU")}
 
 
@@ -76,20 +73,13 @@ def convergence_of_joints(runs: Sequence[Sequence[Mapping[str, Sequence[float]]]
         return png(figure)
 
 
-def sets_of(controllers: Controllers, joint: int, change: bool) -> tuple[float, float, float, float]:
-    """The corners of one input's sets."""
-    names = _CE if change else _E
-    left, a, c, right = (float(controllers[joint, CONTROLLER_COLUMNS.index(name)]) / SET_UNIT for name in names)
-    return left, a, c, right
-
-
 def sets_before(controllers: Controllers) -> bytes:
     """Fig. 11: both inputs and the output."""
     with style():
         figure, row = plt.subplots(1, 3, figsize=(WIDE, 2.1), sharey=True)
         figure.subplots_adjust(**leave(figure, 0.5, 0.12, 0.42, 0.26, wspace=0.1))
-        draw_shapes(row[0], sets_of(controllers, 0, False), looks.SETS_AFTER, _SETS["e"])
-        draw_shapes(row[1], sets_of(controllers, 0, True), looks.SETS_AFTER, _SETS["ce"])
+        draw_shapes(row[0], corners_of(controllers, 0, False), looks.SETS_AFTER, _SETS["e"])
+        draw_shapes(row[1], corners_of(controllers, 0, True), looks.SETS_AFTER, _SETS["ce"])
         width = 0.02
         for centre, colour, name in zip((-1.0, 0.0, 1.0), SIGNS, _SETS["u"], strict=True):
             row[2].plot(
@@ -143,8 +133,8 @@ def sets_after(before: Controllers, after: Mapping[str, Controllers]) -> bytes:
                 words = _SETS["ce" if change else "e"]
                 for joint in range(JOINTS):
                     axes = grid[joint, 2 * column + change]
-                    draw_shapes(axes, sets_of(before, joint, change), looks.SETS_BEFORE, words)
-                    draw_shapes(axes, sets_of(controllers, joint, change), looks.SETS_AFTER, words)
+                    draw_shapes(axes, corners_of(before, joint, change), looks.SETS_BEFORE, words)
+                    draw_shapes(axes, corners_of(controllers, joint, change), looks.SETS_AFTER, words)
                     axes.set_xticks((-1.0, 0.0, 1.0))
                 grid[0, 2 * column + change].set_title(
                     f"{name}:\n{'change of error' if change else 'error'}".replace(", ", ",\n"), fontsize=9

@@ -7,15 +7,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
 
 from greywhale.base.types import Controllers, Floats
-from greywhale.fuzzy.settings import SET_UNIT
 from greywhale.pictures import looks
-from greywhale.pictures.membership import draw_shapes
+from greywhale.pictures.membership import corners_of, draw_shapes
 from greywhale.pictures.page import (
     JOINTS,
     WIDE,
@@ -25,19 +23,12 @@ from greywhale.pictures.page import (
     make_logarithmic,
     mark_beyond,
     mark_of_beyond,
-    save_into,
-    style,
 )
 from greywhale.pictures.plotting import Axes, Figure, Line2D, plt
 from greywhale.protocol.joints import ALL, Joints
-from greywhale.simulate import CONTROLLER_COLUMNS
 
 _SET_NAMES = (("NE", "ZE", "PE"), ("NCE", "ZCE", "PCE"))
-# For the error and its change: the columns of the corners (left, the middle's two, right), and the name of the sets.
-_INPUTS = {
-    "error": (("ne_c", "ze_a", "ze_c", "pe_b"), "$K_p\\,e$"),
-    "change of error": (("nce_c", "zce_a", "zce_c", "pce_b"), "$K_d\\,\\Delta e$"),
-}
+_INPUTS = {"error": "$K_p\\,e$", "change of error": "$K_d\\,\\Delta e$"}
 _UNCHANGED = "unchanged by the tuning"
 # A close-up shows so much before and after the largest jump of the leader.
 _CLOSE_BEFORE_S, _CLOSE_AFTER_S = 0.05, 0.45
@@ -64,47 +55,16 @@ def cost_words(method: str) -> str:
     return "best cost [0: floor, 1: before tuning]"
 
 
-def draw_sets(path: Path, before: Controllers, after: Controllers, joints: Joints = ALL) -> Path:
-    """Draw the input sets of controllers as a board stores them, int32 (4, 13): before dashed, after solid.
-
-    Sets that the tuning left as they were are drawn once, and it is said.
-    """
-    with style():
-        return save_into(plot_sets(before, after, joints), path.parent, path.name)
-
-
-def draw_responses(
-    path: Path,
-    time_s: Floats,
-    leader: Floats,
-    responses: Mapping[str, Response],
-    title: str,
-    joints: Joints = ALL,
-) -> Path:
-    """Draw leader (rows, 4) and followers: for each joint the whole motion, its error, and its largest move close up.
-
-    The first word of a response's name stands before its error in the titles.
-    """
-    with style():
-        return save_into(plot_responses(time_s, leader, responses, title, joints), path.parent, path.name)
-
-
-def draw_convergence(
-    path: Path,
-    curves: Sequence[tuple[npt.NDArray[np.int64], Floats]],
-    title: str,
-    cost: str,
-    joints: Joints = ALL,
-) -> Path:
-    """A panel a joint: best cost so far over evaluations; `cost` names it with its unit."""
-    with style():
-        return save_into(plot_convergence(curves, title, cost, joints), path.parent, path.name)
-
-
 def plot_sets(before: Controllers, after: Controllers, joints: Joints = ALL) -> Figure:
-    """What `draw_sets` writes, as a figure of pyplot's that the caller closes."""
-    places = [CONTROLLER_COLUMNS.index(one) for columns, _ in _INPUTS.values() for one in columns]
-    some = bool((before[:, places] != after[:, places]).any())
+    """The input sets of controllers as a board stores them, int32 (4, 13): before dashed, after solid.
+
+    Sets that the tuning left as they were are drawn once, and it is said. This and the others below are figures of
+    pyplot's that the caller closes.
+    """
+    corners = [
+        [[corners_of(rows, joint, change) for rows in (before, after)] for change in (False, True)] for joint in ALL
+    ]
+    some = any(one[0] != one[1] for joint in corners for one in joint)
     count = len(joints)
     height = 7.0 - 1.46 * (len(JOINTS) - count)
     figure, grid = plt.subplots(count, 2, figsize=(WIDE, height), sharex=True, sharey=True, squeeze=False)
@@ -112,14 +72,11 @@ def plot_sets(before: Controllers, after: Controllers, joints: Joints = ALL) -> 
     told = "before and after tuning" if some else _UNCHANGED
     headline(figure, f"Input membership functions {told}")
     for joint, row in zip(joints, grid, strict=True):
-        for axes, (name, (columns, symbol)) in zip(row, _INPUTS.items(), strict=True):
-            corners = [
-                [rows[joint, CONTROLLER_COLUMNS.index(one)] / SET_UNIT for one in columns] for rows in (before, after)
-            ]
-            changed = corners[0] != corners[1]
+        for axes, (name, symbol), (old, new) in zip(row, _INPUTS.items(), corners[joint], strict=True):
+            changed = old != new
             if changed:
-                draw_shapes(axes, corners[0], looks.SETS_BEFORE)
-            draw_shapes(axes, corners[1], looks.SETS_AFTER)
+                draw_shapes(axes, old, looks.SETS_BEFORE)
+            draw_shapes(axes, new, looks.SETS_AFTER)
             same = f" ({_UNCHANGED})" if some and not changed else ""
             axes.set_title(f"{JOINTS[joint]}: {name}{same}")
             axes.set_xlim(-1.0, 1.0)
@@ -146,7 +103,10 @@ def _label_sets(figure: Figure, changed: bool) -> None:
 def plot_responses(
     time_s: Floats, leader: Floats, responses: Mapping[str, Response], title: str, joints: Joints = ALL
 ) -> Figure:
-    """What `draw_responses` writes, as a figure of pyplot's that the caller closes."""
+    """Leader (rows, 4) and followers: for each joint the whole motion, its error, and its largest move close up.
+
+    The first word of a response's name stands before its error in the titles.
+    """
     figure = plt.figure(figsize=(WIDE, 8.6 - 1.85 * (len(JOINTS) - len(joints))))
     headline(figure, title)
     below = _label_responses(figure, responses, _largest_error(time_s, leader, responses, joints))
@@ -231,7 +191,7 @@ def _fit(axes: Axes, time_s: Floats, leader: Floats, curves: Sequence[tuple[Floa
 def plot_convergence(
     curves: Sequence[tuple[npt.NDArray[np.int64], Floats]], title: str, cost_name: str, joints: Joints = ALL
 ) -> Figure:
-    """What `draw_convergence` writes, as a figure of pyplot's that the caller closes."""
+    """A panel a joint: best cost so far over evaluations; `cost_name` names it with its unit."""
     rows = (len(joints) + 1) // 2
     figure, grid = plt.subplots(rows, 2, figsize=(WIDE, 4.6 if rows == 2 else 2.9), sharex=True, squeeze=False)
     figure.subplots_adjust(**leave(figure, 0.62, 0.14, 0.42, 0.62, wspace=0.24, hspace=0.36))

@@ -74,17 +74,16 @@ def learn(
 def draw(learnt: Learnt, folder: Path) -> tuple[Path, ...]:
     """Draw the fuzzy sets before and after tuning, and how the costs fell; the paths."""
     # Matplotlib takes a second to import.
-    from greywhale.pictures.tuning import cost_words, draw_convergence, draw_sets
+    from greywhale.pictures.page import save_into, style
+    from greywhale.pictures.tuning import cost_words, plot_convergence, plot_sets
 
     tuning = learnt.tuning
     joints = tuning.model.arm.joints_in_use
     curves = [(np.array(one.evaluations), np.array(one.cost)) for one in tuning.curves]
-    return (
-        draw_sets(folder / "sets.png", tuning.before, tuning.after, joints),
-        draw_convergence(
-            folder / "convergence.png", curves, "Convergence of the tuning", cost_words(tuning.method), joints
-        ),
-    )
+    with style():
+        sets = plot_sets(tuning.before, tuning.after, joints)
+        costs = plot_convergence(curves, "Convergence of the tuning", cost_words(tuning.method), joints)
+        return save_into(sets, folder, "sets.png"), save_into(costs, folder, "convergence.png")
 
 
 def arm_as_drawn(arm: ArmParameters) -> ArmParameters:
