@@ -1,9 +1,11 @@
 // The board's state, its fault with the remedy, and the counters of firmware and link.
 
-import { Clutch, ClutchAction, Fault, State, StopReason, SaveState } from "../link/schema";
+import { Clutch, ClutchAction, Fault, State, StopReason, SaveState, TABLE } from "../link/schema";
 import { faultSentence, upperFirst } from "../link/refusal";
 import { button, el, setText } from "../parts/dom";
 import type { Session } from "../session";
+
+const SUPPLY_MV = TABLE.named("supply_mv").index;
 
 export class StatePanel {
   readonly element: HTMLElement;
@@ -20,7 +22,8 @@ export class StatePanel {
   constructor(private readonly session: Session) {
     this.fault.append(this.faultText, button("Clear fault", () => void session.attempt(() => session.clearFault())));
     const names = [
-      "last stop", "ticks", "late ticks", "longest tick", "samples lost", "samples not sent", "frames damaged", "bytes lost", "no rule", "stored sets",
+      "last stop", "supply, as set", "ticks", "late ticks", "longest tick", "samples lost", "samples not sent", "frames damaged", "bytes lost",
+      "no rule", "stored sets",
     ];
     const list = el("dl", { class: "facts" });
     for (const name of names) {
@@ -53,7 +56,7 @@ export class StatePanel {
 
   private show(): void {
     this.showClutch();
-    const { status, link, samples, damaged } = this.session;
+    const { status, link, samples, damaged, parameters } = this.session;
     if (!status || !link.open) {
       setText(this.sentence, link.sentence || "No board is there yet.");
       this.fault.hidden = true;
@@ -64,6 +67,7 @@ export class StatePanel {
     if (status.fault !== Fault.is.none) setText(this.faultText, faultSentence(status));
     const facts: Record<string, string> = {
       "last stop": StopReason.of(status.stop_reason).description,
+      "supply, as set": parameters ? `${parameters[SUPPLY_MV]! / 1000} V` : "–", // no pin of the board measures it
       ticks: status.tick.toLocaleString("en"),
       "late ticks": String(status.late_ticks),
       "longest tick": `${status.tick_us_max} µs`,
