@@ -2,7 +2,9 @@
 // The Python module greywhale_sim._board.
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
+#include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
 
 #include <algorithm>
 
@@ -107,9 +109,20 @@ void bind_stats(nb::module_& m) {
 using BoardClass = nb::class_<PyBoard>;
 
 void bind_running(BoardClass& c) {
-  c.def("load_hex", &PyBoard::load_hex, "path"_a, nb::arg("bootloader") = false,
-        "Write an Intel HEX file to the flash; a bootloader's lowest address becomes the reset vector.")
-      .def("load_elf", &PyBoard::load_elf, "path"_a, "Write an ELF program to flash and EEPROM.")
+  c.def(
+       "write_program",
+       [](PyBoard& b, const std::vector<std::pair<uint32_t, nb::bytes>>& pieces, const std::string& name,
+          bool bootloader) {
+         std::vector<board::Segment> segments;
+         for (const auto& piece : pieces)
+           segments.push_back({piece.first, {piece.second.c_str(), piece.second.size()}});
+         b.write_program(segments, name, bootloader);
+       },
+       "pieces"_a, "name"_a, "bootloader"_a = false,
+       "Write pieces (address, bytes) to flash and EEPROM; a bootloader's lowest address becomes the reset vector. "
+       "greywhale_sim.programs reads them from files.")
+      .def_prop_ro(
+          "family", [](const PyBoard& b) { return b.chip().elf_architecture; }, "5 of avr5, 6 of avr6.")
       .def("erase_flash", &PyBoard::erase_flash, "Erase the flash, the bootloader too.")
       .def("flash", [](const PyBoard& b) { return to_bytes(b.flash()); })
 

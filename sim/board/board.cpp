@@ -94,7 +94,7 @@ void Board::build_models() {
 
 // ---- programming ----
 
-void Board::write_memory(const std::vector<Segment>& segments, const std::string& path) {
+void Board::write_program(const std::vector<Segment>& segments, const std::string& name, bool bootloader) {
   const uint32_t flash_size = avr_->flashend + 1;
   std::string eeprom = eeprom_->content();
   for (const Segment& segment : segments) {
@@ -104,36 +104,22 @@ void Board::write_memory(const std::vector<Segment>& segments, const std::string
     const uint32_t at = in_eeprom ? segment.address - eeprom_base : segment.address;
     const size_t room = in_eeprom ? eeprom.size() : flash_size;
     if (at > room || size > room - at)
-      throw BoardError(path + " has bytes up to address " + hex(static_cast<uint32_t>(segment.address + size - 1)) +
+      throw BoardError(name + " has bytes up to address " + hex(static_cast<uint32_t>(segment.address + size - 1)) +
                        ", but the " + chip_.title + " has " + std::to_string(room / 1024) + " KB of " +
                        (in_eeprom ? "EEPROM" : "flash") + "; build it for this chip");
-    if (in_eeprom) eeprom.replace(at, size, reinterpret_cast<const char*>(segment.bytes.data()), size);
+    if (in_eeprom) eeprom.replace(at, size, segment.bytes);
   }
   for (const Segment& segment : segments)
     if (segment.address < flash_size)
       std::copy(segment.bytes.begin(), segment.bytes.end(), avr_->flash + segment.address);
   cpu_->flash_changed(0, flash_size);
   eeprom_->set_content(eeprom);
-}
-
-void Board::load_hex(const std::string& path, bool bootloader) {
-  const std::vector<Segment> segments = read_intel_hex(path);
-  write_memory(segments, path);
   if (!bootloader) return;
   const auto lowest = std::min_element(segments.begin(), segments.end(),
                                        [](const Segment& a, const Segment& b) { return a.address < b.address; });
   boot_start_ = lowest->address;
   avr_->reset_pc = boot_start_;
   flash_->protect_from(boot_start_);
-}
-
-void Board::load_elf(const std::string& path) {
-  const ElfImage image = read_elf(path);
-  if (image.architecture != chip_.elf_architecture)
-    throw BoardError(path + " is built for another chip family (avr" + std::to_string(image.architecture) +
-                     "), but the " + chip_.title + " is avr" + std::to_string(chip_.elf_architecture) +
-                     "; build it for this chip");
-  write_memory(image.segments, path);
 }
 
 void Board::erase_flash() {

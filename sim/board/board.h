@@ -13,7 +13,6 @@
 #include "cpu.h"
 #include "eeprom.h"
 #include "flash.h"
-#include "image.h"
 #include "interrupts.h"
 #include "ports.h"
 #include "prescaler.h"
@@ -32,6 +31,12 @@ struct Stats {
   uint64_t watchdog_resets = 0;
 };
 
+// A piece of a program: bytes and where they go, in the addresses of avr-gcc's linker.
+struct Segment {
+  uint32_t address = 0;
+  std::string bytes;
+};
+
 class Board {
  public:
   explicit Board(const std::string& chip);
@@ -40,8 +45,8 @@ class Board {
   Board& operator=(const Board&) = delete;
 
   // Programming, as a programmer would do it: the reset that follows is up to the caller.
-  void load_hex(const std::string& path, bool bootloader);
-  void load_elf(const std::string& path);
+  // `name` stands in the message where a piece has no room; nothing is written then. A bootloader protects itself.
+  void write_program(const std::vector<Segment>& segments, const std::string& name, bool bootloader);
   void erase_flash();
   std::string flash() const;
 
@@ -109,7 +114,6 @@ class Board {
   };
 
   void build_models();
-  void write_memory(const std::vector<Segment>& segments, const std::string& path);
   void restart(uint8_t cause);
   void step();
   bool ended() const { return avr_->state == cpu_Done || avr_->state == cpu_Crashed; }

@@ -12,6 +12,7 @@ import pytest
 
 from greywhale.protocol import schema
 from greywhale_sim.board_with_image import BoardWithImage
+from greywhale_sim.programs import load_hex
 from tests.firmware.conftest import enable, ms_until_off
 from tests.simulated_board.stk500 import Version1, Version2
 
@@ -25,7 +26,7 @@ RESETS = 2
 @pytest.fixture
 def booted(bench: BoardWithImage) -> BoardWithImage:
     """A board whose bootloader has started the firmware."""
-    bench.board.load_hex(str(bench.wiring.bootloader), bootloader=True)
+    load_hex(bench.board, bench.wiring.bootloader, bootloader=True)
     cut_power(bench)
     return bench
 

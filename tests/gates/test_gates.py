@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from greywhale_sim._board import Board
+from greywhale_sim.programs import load_elf
 from tools.gates import size, stack, tick
 from tools.gates.__main__ import check
 from tools.gates.timing.cycles import MEGA, NANO, Chip
@@ -95,7 +96,7 @@ def test_the_stack_bound_holds_and_is_tight(
     elf = build(tmp_path, DEEP.format(leaf=leaf, middle=middle), chip)
     bound = stack.bound(elf, kind)
     board = Board(chip)
-    board.load_elf(str(elf))
+    load_elf(board, elf)
     board.power_on(1)
     board.poke(ram, bytes([0xA5]) * (kind.ram_end + 1 - ram))
     assert board.run_until(10_000_000) == 1

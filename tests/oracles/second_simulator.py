@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from greywhale.protocol import frames, schema
 from greywhale.protocol.declared import Message
 from greywhale_sim._board import Board
+from greywhale_sim.programs import load_hex
 from greywhale_sim.wiring import NANO
 from tools import ROOT
 
@@ -76,7 +77,7 @@ def run_avr8js(scenario: Scenario, folder: Path) -> Run:
 
 def run_board(scenario: Scenario) -> Run:
     board = Board("atmega328p")
-    board.load_hex(str(IMAGE))
+    load_hex(board, IMAGE)
     return run_image(
         board,
         TICK_VECTOR,

@@ -19,6 +19,7 @@ from greywhale.files.arm import default_arm
 from greywhale.protocol import schema
 from greywhale.protocol.frames import Frame
 from greywhale_sim._board import Board
+from greywhale_sim.programs import load_hex
 from greywhale_sim.wiring import MEGA
 from tests.oracles.page_bench import TICK_SLICES, PageBench
 from tests.oracles.second_simulator import (
@@ -71,7 +72,7 @@ def run_page(scenario: Scenario) -> Run:
 
 def run_mega(scenario: Scenario) -> Run:
     board = Board(MEGA.mcu)
-    board.load_hex(str(IMAGE))
+    load_hex(board, IMAGE)
     board.add_pin_output(MEGA.enable.port, MEGA.enable.bit)
     for motor in MEGA.motors:
         board.add_duty_output(motor.pwm.timer, motor.pwm.channel)

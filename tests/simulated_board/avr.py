@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Protocol
 
 from greywhale_sim._board import Board
+from greywhale_sim.programs import load_elf
 from greywhale_sim.symbols import Symbol, read_symbols
 
 PRELUDE = """
@@ -42,7 +43,7 @@ class Program:
         self.path = path
         self.symbols: dict[str, Symbol] = read_symbols(path)
         self.board = Board(chip)
-        self.board.load_elf(str(path))
+        load_elf(self.board, path)
 
     def start(self, seed: int = 1) -> Program:
         self.board.power_on(seed)

@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from greywhale_sim._board import Board
+from greywhale_sim.programs import load_hex
 from tests.simulated_board.avr import MakeProgram
 from tests.simulated_board.stk500 import Version1
 
@@ -19,7 +20,7 @@ CYCLES_PER_MS = 16_000
 
 def nano_with_bootloader() -> Board:
     board = Board("atmega328p")
-    board.load_hex(str(NANO_HEX), bootloader=True)
+    load_hex(board, NANO_HEX, bootloader=True)
     board.power_on()
     board.run_until(board.cycle + 50 * CYCLES_PER_MS)
     return board
@@ -36,7 +37,7 @@ def test_a_bootloader_too_large_for_the_chip_is_refused() -> None:
     """Debian's build of optiboot is 20 bytes longer than its 512-byte boot section; no chip would take it."""
     oversize = BOOTLOADERS / "optiboot" / "optiboot_atmega328.hex"
     with pytest.raises(ValueError, match="up to address 0x8013, but the ATmega328P has 32 KB of flash"):
-        Board("atmega328p").load_hex(str(oversize), bootloader=True)
+        load_hex(Board("atmega328p"), oversize, bootloader=True)
 
 
 def test_writing_a_page_takes_the_time_of_the_chip() -> None:

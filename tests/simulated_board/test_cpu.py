@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from greywhale_sim._board import Board
+from greywhale_sim.programs import load_elf, load_hex
 from tests.board.flash.hex_files import hex_text
 from tests.simulated_board.avr import BUSY, Compile, MakeProgram
 
@@ -89,7 +90,7 @@ def test_every_instruction_does_what_simavr_does(tmp_path: Path, chip: str, seed
     fast, reference = Board(chip), Board(chip)
     reference.use_reference_decoder(True)
     for board in (fast, reference):
-        board.load_hex(str(image))
+        load_hex(board, image)
     for index, (address, pattern) in enumerate(tested):
         state = random_state(chip, dice)
         for board in (fast, reference):
@@ -122,7 +123,7 @@ def test_a_whole_program_with_interrupts_does_what_simavr_does(compile_avr: Comp
     boards = [Board("atmega2560"), Board("atmega2560")]
     boards[1].use_reference_decoder(True)
     for board in boards:
-        board.load_elf(path)
+        load_elf(board, path)
         board.power_on(9)
     for _ in range(2_000_000 // chunk if chunk > 1 else 100_000):
         for board in boards:

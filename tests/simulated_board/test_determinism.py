@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from greywhale_sim._board import Board
+from greywhale_sim.programs import load_elf
 from tests.simulated_board.avr import BUSY, Compile
 
 PERIOD = 80_000  # inputs change and bytes come every 5 ms
@@ -27,7 +28,7 @@ class Session:
 
     def __init__(self, path: Path) -> None:
         self.board = Board("atmega2560")
-        self.board.load_elf(str(path))
+        load_elf(self.board, path)
         self.board.power_on(3)
         self.board.add_duty_output(3, "A")
         self.next_input = 0

@@ -13,6 +13,7 @@ from greywhale import _native
 from greywhale.fuzzy import exact, load_joints, twin
 from greywhale.fuzzy.settings import SET_UNIT, JointSettings
 from greywhale_sim._board import Board
+from greywhale_sim.programs import load_elf
 from greywhale_sim.symbols import read_symbols
 from tools import ROOT
 from tools.benchmarks.figure import Figure
@@ -69,7 +70,7 @@ def _float_cycles() -> list[Figure]:
     command = ["avr-g++", "-std=gnu++14", "-O2", "-mmcu=atmega2560", str(FLOAT_SOURCE), "-o", str(FLOAT_ELF), "-lm"]
     subprocess.run(command, check=True)
     board = Board("atmega2560")
-    board.load_elf(str(FLOAT_ELF))
+    load_elf(board, FLOAT_ELF)
     board.power_on(1)
     board.run_until(20_000)  # variables and stack
     symbols = read_symbols(FLOAT_ELF)

@@ -13,6 +13,7 @@ from pathlib import Path
 from greywhale.fuzzy.settings import MOST_CE_TICKS, JointSettings
 from greywhale.protocol.schema import Refusal
 from greywhale_sim._board import Board
+from greywhale_sim.programs import load_elf
 from greywhale_sim.symbols import read_symbols
 from tools import BUILT_FIRMWARE
 
@@ -59,7 +60,7 @@ class FuzzyOnBoard:
             )
         )
         self._board = Board(chip)
-        self._board.load_elf(str(image))
+        load_elf(self._board, image)
         self._board.power_on(1)
         self._board.poke(1, b"\0")  # the register compiled code takes for zero
 

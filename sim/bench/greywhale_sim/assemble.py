@@ -55,6 +55,7 @@ def build_board(options: BenchOptions) -> Any:
     """A powered board: bootloader, firmware unless blank, EEPROM content."""
     try:
         from greywhale_sim._board import Board, BoardError
+        from greywhale_sim.programs import load_hex
     except ImportError as error:
         raise UserError(f"the simulated board is not built ({error}); run: make setup") from None
     if options.blank and options.firmware is not None:
@@ -63,10 +64,10 @@ def build_board(options: BenchOptions) -> Any:
     if not wiring.bootloader.is_file():
         raise UserError(f"{wiring.bootloader}: the bootloader is missing; install the Debian package arduino-core-avr.")
     board = Board(wiring.mcu)
-    board.load_hex(str(wiring.bootloader), bootloader=True)
+    load_hex(board, wiring.bootloader, bootloader=True)
     if not options.blank:
         try:
-            board.load_hex(str(_firmware(options, wiring)))
+            load_hex(board, _firmware(options, wiring))
         except BoardError as error:
             raise UserError(f"{error}.") from None
     if options.eeprom is not None:

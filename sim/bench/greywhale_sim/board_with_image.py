@@ -14,6 +14,7 @@ from greywhale.protocol import frames, schema
 from greywhale.protocol.declared import Reply_co, Request
 from greywhale_sim._board import Board
 from greywhale_sim.assemble import BUILDS
+from greywhale_sim.programs import load_elf
 from greywhale_sim.symbols import read_symbols
 from greywhale_sim.wiring import BOARDS
 
@@ -38,7 +39,7 @@ class BoardWithImage:
         self.board: Any = Board(self.wiring.mcu)
         elf = BUILDS / self.wiring.environment / "firmware.elf"
         self.symbols = read_symbols(elf)
-        self.board.load_elf(str(elf))
+        load_elf(self.board, elf)
         self.board.power_on(seed)
         self.board.set_millivolts(self.millivolts)
         self.paint()

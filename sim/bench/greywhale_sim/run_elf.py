@@ -15,6 +15,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from greywhale_sim._board import Board, BoardError
+from greywhale_sim.programs import load_elf
 
 CYCLES_PER_S = 16_000_000
 SLICE_CYCLES = 160_000  # output appears every 10 ms of simulated time
@@ -46,7 +47,7 @@ def parse_arguments(arguments: Sequence[str] | None) -> argparse.Namespace:
 def run(program: str, mcu: str, millivolts: Sequence[float], limit_s: float, loopback: bool = False) -> int:
     """Run the program to its end, copy USART0 to standard output, and return the exit code."""
     board = Board(mcu)
-    board.load_elf(program)
+    load_elf(board, program)
     board.power_on()
     board.uart_loopback = loopback
     board.set_millivolts(np.asarray(millivolts, dtype=np.float64))

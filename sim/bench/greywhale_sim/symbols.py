@@ -5,11 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 from typing import NamedTuple
 
-from elftools.common.exceptions import ELFError
-from elftools.elf.elffile import ELFFile
 from elftools.elf.sections import SymbolTableSection
 
 from greywhale_sim._board import BoardError
+from greywhale_sim.programs import opened_elf
 
 DATA_BASE = 0x800000  # the data space of avr-gcc's linker begins here; flash begins at 0
 EEPROM_BASE = 0x810000
@@ -25,14 +24,11 @@ class Symbol(NamedTuple):
 
 def read_symbols(path: str | Path) -> dict[str, Symbol]:
     """All named variables and functions of an ELF program; EEPROM variables are left out."""
-    try:
-        with Path(path).open("rb") as file:
-            table = ELFFile(file).get_section_by_name(".symtab")
-            if not isinstance(table, SymbolTableSection):
-                raise BoardError(f"{path} has no symbol table; link it without --strip-all (-s)")
-            entries = [(entry.name, entry["st_value"], entry["st_size"]) for entry in table.iter_symbols()]
-    except (OSError, ELFError) as error:
-        raise BoardError(f"{path} cannot be read as an ELF program ({error}); give the .elf avr-gcc linked") from error
+    with opened_elf(path) as elf:
+        table = elf.get_section_by_name(".symtab")
+        if not isinstance(table, SymbolTableSection):
+            raise BoardError(f"{path} has no symbol table; link it without --strip-all (-s)")
+        entries = [(entry.name, entry["st_value"], entry["st_size"]) for entry in table.iter_symbols()]
     symbols = {}
     for name, value, size in entries:
         if name and value < EEPROM_BASE:

@@ -6,6 +6,7 @@ import subprocess
 from pathlib import Path
 
 from greywhale_sim._board import Board
+from greywhale_sim.programs import load_elf
 from greywhale_sim.symbols import read_symbols
 from tools.gates.timing.bound import Timing
 from tools.gates.timing.cycles import Chip
@@ -35,7 +36,7 @@ class Assembled:
 
     def measured(self, argument: int) -> int:
         board = Board(self.chip.name.lower())
-        board.load_elf(str(self.elf))
+        load_elf(board, self.elf)
         board.power_on(1)
         board.poke(1, b"\0")  # the register that compiled code takes for zero
         board.poke(24, bytes([argument]))

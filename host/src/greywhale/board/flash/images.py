@@ -52,22 +52,33 @@ def packaged_image(board: str) -> Path | None:
 
 def read_image(path: Path) -> Image:
     """Read a HEX file."""
+    memory = bytearray()
+    for address, data in read_pieces(path):
+        end = address + len(data)
+        memory.extend(b"\xff" * (end - len(memory)))
+        memory[address:end] = data
+    return Image(path, len(memory), _find_record(memory), bytes(memory))
+
+
+def read_pieces(path: Path) -> list[tuple[int, bytes]]:
+    """What a HEX file holds: address and bytes of each stretch without a gap."""
     if not path.is_file():
         raise UserError(f"{path}: there is no such file; build one with `pio run`, or leave --hex out.", BAD_USAGE)
     try:
         lines = path.read_text(encoding="ascii", errors="replace").splitlines()
     except OSError as error:
         raise UserError(f"{path}: cannot be read: {os_reason(error)}.", BAD_USAGE) from None
-    memory = bytearray()
-    for address, data in _chunks(path, lines):
-        end = address + len(data)
-        if end > _LARGEST:
+    pieces: list[tuple[int, bytearray]] = []
+    for address, data in _records(path, lines):
+        if address + len(data) > _LARGEST:
             raise UserError(f"{path}: data at address {address:#x}; no board has as much memory.", BAD_USAGE)
-        memory.extend(b"\xff" * (end - len(memory)))
-        memory[address:end] = data
-    if not memory:
+        if pieces and address == pieces[-1][0] + len(pieces[-1][1]):
+            pieces[-1][1].extend(data)
+        elif data:
+            pieces.append((address, bytearray(data)))
+    if not pieces:
         raise UserError(f"{path}: the file holds no data; give the .hex that PlatformIO built.", BAD_USAGE)
-    return Image(path, len(memory), _find_record(memory), bytes(memory))
+    return [(address, bytes(data)) for address, data in pieces]
 
 
 def check_image(image: Image, board: FlashBoard, port: str) -> None:
@@ -88,7 +99,7 @@ def check_image(image: Image, board: FlashBoard, port: str) -> None:
         )
 
 
-def _chunks(path: Path, lines: list[str]) -> Iterator[tuple[int, bytes]]:
+def _records(path: Path, lines: list[str]) -> Iterator[tuple[int, bytes]]:
     """Address and bytes of each data record, until the record that ends the file."""
     base = 0
     for number, line in enumerate(lines, start=1):
