@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 from elftools.elf.elffile import ELFFile
 from elftools.elf.sections import SymbolTableSection
 
-from tools.gates.tick import FORBIDDEN
-
 FLASH_LIMIT = 26 * 1024
 RAM_LIMIT = 1680  # before the stack
 FLASH_SECTIONS = (".text", ".data")
 RAM_SECTIONS = (".data", ".bss", ".noinit")
+FORBIDDEN = {
+    "floating point": re.compile(
+        r"^(__(add|sub|mul|div|neg|cmp|eq|ne|lt|le|gt|ge|unord)[sd]f\d?|__fix(uns)?[sd]f[sd]i|__float(un)?s?[sd]i[sd]f|__fp_\w+)$"
+    ),
+    "a heap": re.compile(r"^(malloc|calloc|realloc|free|_Zn[wa]j|_Zd[la]Pvj?)$"),
+}
 
 
 def taken(elf: Path) -> tuple[int, int]:
@@ -30,7 +35,6 @@ def complaints(elf: Path) -> list[str]:
     with elf.open("rb") as stream:
         tables = [table for table in ELFFile(stream).iter_sections() if isinstance(table, SymbolTableSection)]
         names = sorted({symbol.name for table in tables for symbol in table.iter_symbols()})
-    patterns = {what: FORBIDDEN[what] for what in ("floating point", "a heap")}
     return found + [
-        f"{name}: {what} is linked in." for name in names for what, one in patterns.items() if one.match(name)
+        f"{name}: {what} is linked in." for name in names for what, one in FORBIDDEN.items() if one.match(name)
     ]
