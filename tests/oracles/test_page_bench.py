@@ -13,7 +13,6 @@ import numpy as np
 import pytest
 
 from greywhale.arm import Arm, Potentiometers
-from greywhale.base.types import Floats
 from greywhale.files.arm import default_arm
 from greywhale.files.trajectory import Trajectory
 from greywhale.protocol import schema
@@ -22,6 +21,7 @@ from greywhale_sim.bench import SLICE_S, Bench
 from greywhale_sim.board_supply import FULL_MV
 from greywhale_sim.leader import LeaderPlayer
 from greywhale_sim.wiring import MEGA
+from tests.bench.conftest import FakeBoard
 from tests.oracles.page_bench import PageBench
 from tests.oracles.second_simulator import request
 from tools.site.bench_data import fault_calls
@@ -30,43 +30,13 @@ SEED = 1
 PINS, POWERED = slice(20, 29), 29  # of what the module shows
 
 
-class ReplayedBoard:
+class ReplayedBoard(FakeBoard):
     """A board to greywhale_sim's bench: its pins are those of the page, and nothing runs on it."""
 
-    pc = 0
-    crash_reason = ""
-
-    def __init__(self) -> None:
-        self.cycle = 0
-        self.pins: Floats = np.zeros(17)
-        self.millivolts: Floats = np.zeros(8)
-        self.floating = 0
-        self.supply_mv = FULL_MV
-
-    def add_duty_output(self, timer: int, channel: str) -> int:
-        return 0
-
-    def add_pin_output(self, port: str, bit: int) -> int:
-        return 0
-
-    def hold_pin(self, port: str, bit: int, high: bool) -> None: ...
-    def let_pin_go(self, port: str, bit: int) -> None: ...
-
-    def outputs(self) -> Floats:
-        return self.pins
-
-    def set_millivolts(self, millivolts: Floats) -> None:
-        self.millivolts = millivolts.copy()
-
-    def set_floating(self, inputs: int) -> None:
-        self.floating = inputs
+    supply_mv = FULL_MV
 
     def set_supply(self, millivolts: int, seed: int = 1) -> None:
         self.supply_mv = millivolts
-
-    def run_until(self, cycle: int) -> int:
-        self.cycle = cycle
-        return 0
 
 
 class Pair:
@@ -111,7 +81,7 @@ class Pair:
         for row, pins in zip(ours, [before[PINS], *page[:-1, PINS]], strict=True):
             self.board.pins[: len(pins)] = pins
             self.bench.run_slices(1)
-            row[:20] = *self.board.millivolts, *self.bench.voltages, *self.bench.leader.angles, *self.bench.angles
+            row[:20] = *self.board.millivolts[-1], *self.bench.voltages, *self.bench.leader.angles, *self.bench.angles
             row[POWERED] = self.board.supply_mv == FULL_MV
         ours[:, PINS] = page[:, PINS]
         np.testing.assert_array_equal(page, ours)
