@@ -208,11 +208,6 @@ def test_cma_es_says_that_it_cannot_search_a_line() -> None:
         create("cma-es", [0], [1], budget=10)
 
 
-def test_relative_keep_is_a_probability() -> None:
-    with pytest.raises(ValueError, match="keep is 1, a probability"):
-        create("gwo-woa-relative", [0], [1], budget=10, keep=1.0)
-
-
 LOW, HIGH = np.full(5, -4.0), np.full(5, 4.0)
 MINIMUM = np.array([0.5, -1.25, 2.0, 0.0, 3.0])
 BOUND_TO_THE_ORIGIN = ("gwo", "gwo-woa", "gwo-woa-printed", "woa")

@@ -83,6 +83,7 @@ class GreyWolf(Optimiser):
 
     name: ClassVar[str] = "gwo"
     smallest_pack: ClassVar[int] = LEADERS
+    usual_a_end: ClassVar[float] = A_END
 
     def __init__(
         self,
@@ -92,11 +93,11 @@ class GreyWolf(Optimiser):
         *,
         pack: int = PACK,
         start: ArrayLike | None = None,
-        a_end: float = A_END,
+        a_end: float | None = None,
         elitist: bool = True,
     ) -> None:
         super().__init__(box, budget, source, pack=pack, start=start)
-        self._a_end = a_end
+        self._a_end = self.usual_a_end if a_end is None else a_end
         self._elitist = elitist
         self._pack = np.empty((0, box.dimensions))
         self._leaders = np.empty((0, box.dimensions))
@@ -140,7 +141,7 @@ class GreyWolfWhale(GreyWolf):
         *,
         pack: int = PACK,
         start: ArrayLike | None = None,
-        a_end: float = A_END,
+        a_end: float | None = None,
         elitist: bool = True,
         b: float = 1.0,
     ) -> None:
@@ -161,15 +162,4 @@ class GreyWolfWhaleAsPrinted(GreyWolfWhale):
     """GWO-WOA with Eq. 6 to the letter, a = 2 - t/T_max, which ends at 1: the wolves never come to rest."""
 
     name: ClassVar[str] = "gwo-woa-printed"
-
-    def __init__(
-        self,
-        box: Box,
-        budget: int,
-        source: Source,
-        *,
-        pack: int = PACK,
-        start: ArrayLike | None = None,
-        elitist: bool = True,
-    ) -> None:
-        super().__init__(box, budget, source, pack=pack, start=start, a_end=A_END_AS_PRINTED, elitist=elitist)
+    usual_a_end: ClassVar[float] = A_END_AS_PRINTED

@@ -39,23 +39,9 @@ class RelativeWolfWhale(Optimiser):
     smallest_pack: ClassVar[int] = LEADERS
 
     def __init__(
-        self,
-        box: Box,
-        budget: int,
-        source: Source,
-        *,
-        pack: int = PACK,
-        start: ArrayLike | None = None,
-        a: float = A,
-        weights: tuple[float, float, float] = WEIGHTS,
-        keep: float = KEEP,
+        self, box: Box, budget: int, source: Source, *, pack: int = PACK, start: ArrayLike | None = None
     ) -> None:
         super().__init__(box, budget, source, pack=pack, start=start)
-        if not 0 <= keep < 1:
-            raise ValueError(f"keep is {keep:g}, a probability that must lie in [0, 1)")
-        self._a = a
-        self._weights = weights
-        self._keep = keep
         # In unit coordinates.
         self._pack = np.empty((0, box.dimensions))
         self._costs = np.empty(0)
@@ -70,15 +56,13 @@ class RelativeWolfWhale(Optimiser):
         leaders, _ = best_three(self._pack, self._costs)
         draw = Draw.of(self._source, wolves, dimensions)
         alpha = draw_alpha_factor(self._source, wolves)
-        moved = hunt(
-            self._pack, leaders, self._a, draw, alpha=alpha, origin=self._pack.mean(axis=0), weights=self._weights
-        )
+        moved = hunt(self._pack, leaders, A, draw, alpha=alpha, origin=self._pack.mean(axis=0), weights=WEIGHTS)
         self._tried = self._bring_back(self._keep_some(moved))
         return self.box.from_unit(self._tried)
 
     def _keep_some(self, moved: Floats) -> Floats:
         wolves, dimensions = moved.shape
-        kept = self._source.random((wolves, dimensions)) < self._keep
+        kept = self._source.random((wolves, dimensions)) < KEEP
         changes = np.floor(self._source.random((wolves,)) * dimensions).astype(int)
         kept[np.arange(wolves), changes] = False
         return np.where(kept, self._pack, moved)

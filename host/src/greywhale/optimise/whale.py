@@ -16,7 +16,7 @@ from greywhale.optimise.box import Box, Source
 from greywhale.optimise.optimiser import PACK, Optimiser
 
 
-def swim(pack: Floats, prey: Floats, others: Floats, a: float, r: Floats, b: float = 1.0) -> Floats:
+def swim(pack: Floats, prey: Floats, others: Floats, a: float, r: Floats) -> Floats:
     """The whales' next places.
 
     `others` is the random whale of each. The rows of `r` are r1, r2, p and the spiral's number, each in [0, 1), a
@@ -26,7 +26,7 @@ def swim(pack: Floats, prey: Floats, others: Floats, a: float, r: Floats, b: flo
     big_a, c, curl = 2 * a * r1 - a, 2 * r2, 2 * curl - 1
     target = np.where(np.abs(big_a) < 1, prey, others)
     encircling = target - big_a * np.abs(c * target - pack)
-    spiral = np.abs(prey - pack) * np.exp(b * curl) * np.cos(2 * np.pi * curl) + prey
+    spiral = np.abs(prey - pack) * np.exp(curl) * np.cos(2 * np.pi * curl) + prey
     moved: Floats = np.where(p < 0.5, encircling, spiral)
     return moved
 
