@@ -100,7 +100,7 @@ def test_what_cannot_be_written_is_refused_and_leaves_nothing(tmp_path: Path) ->
     with pytest.raises(UserError, match="cannot be written"):
         save(simple(), tmp_path / "none" / "picture.png")
     (tmp_path / "file").write_text("")
-    with pytest.raises(UserError, match="cannot be written"):
+    with pytest.raises(UserError, match="cannot be made"):
         save_into(simple(), tmp_path / "file", "picture.png")
     assert plt.get_fignums() == []
     assert [path.name for path in tmp_path.iterdir()] == ["file"]

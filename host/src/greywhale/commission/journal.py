@@ -10,8 +10,9 @@ from pathlib import Path
 from typing import Any
 
 from greywhale.base.closing import Closing
-from greywhale.base.errors import BAD_USAGE, UserError, os_reason
+from greywhale.base.errors import BAD_USAGE, UserError
 from greywhale.base.formats.checked_lines import CheckedLines, Kind
+from greywhale.base.formats.whole import make_folder
 
 NAME = "commission.journal"
 
@@ -32,7 +33,7 @@ class CommissioningJournal(Closing):
                 "--out.",
                 BAD_USAGE,
             )
-        _make(folder)
+        make_folder(folder)
         self._lines = CheckedLines(path, KIND, request, keep=resume)
         self._steps: dict[str, dict[str, Any]] = {line["step"]: line["facts"] for line in self._lines.found}
 
@@ -58,13 +59,6 @@ def _has_steps(path: Path) -> bool:
         return path.read_bytes().count(b"\n") > 1
     except OSError:
         return False
-
-
-def _make(folder: Path) -> None:
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise UserError(f"{folder}: cannot be made: {os_reason(error)}.", BAD_USAGE) from None
 
 
 def _is_step(value: dict[str, Any]) -> bool:

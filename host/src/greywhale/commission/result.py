@@ -9,6 +9,7 @@ from typing import TypedDict
 import numpy as np
 
 from greywhale.arm.parameters import JOINT_NAMES, ArmParameters
+from greywhale.base.errors import counted
 from greywhale.base.types import Crc
 from greywhale.commission.learn import LearntController
 from greywhale.commission.measures import Measures, PartFacts, measure
@@ -130,7 +131,7 @@ class CommissioningResult:
         played = len(self.trials.done) - 1
         lines = [
             self.headline,
-            f"{_count(played, 'set')} of controllers tried on the arm in {_count(len(self.rounds), 'round')}.",
+            f"{counted(played, 'set')} of controllers tried on the arm in {counted(len(self.rounds), 'round')}.",
         ]
         if not self.improved:
             return "\n".join(lines)
@@ -160,7 +161,3 @@ def _row(name: str, cells: Sequence[str]) -> str:
 
 def _cell(value: float, form: str) -> str:
     return "-" if np.isnan(value) else f"{value:{form}}"
-
-
-def _count(number: int, what: str) -> str:
-    return f"{number} {what}" + ("" if number == 1 else "s")

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from greywhale.arm import ArmParameters, PotentiometerBank
 from greywhale.arm.parameters import MOST_NOISE_V, Potentiometer
 from greywhale.base.types import Floats
-from greywhale.identify.data import BLOCK_S, Prepared, part_of
+from greywhale.identify.data import BLOCK_S, Prepared, at, part_of
 from greywhale.identify.noise import pot_noise
 from greywhale.identify.space import Space
 from greywhale.protocol.firmware import JOINTS, TICK_S
@@ -51,8 +51,8 @@ class Loop:
         start, end = float(recorded.time[run.start]), float(recorded.time[run.stop - 1])
         ticks = int((end - start) / TICK_S)
         times: Floats = start + TICK_S * np.arange(ticks, dtype=np.float64)
-        leader = _at(times, recorded.time, recorded.leader)
-        self.follower = _at(times + log.delay, recorded.time, recorded.follower)
+        leader = at(times, recorded.time, recorded.leader)
+        self.follower = at(times + log.delay, recorded.time, recorded.follower)
         self.leader = leader
         reference = np.vstack([np.tile(leader[:1], (LEAD_TICKS, 1)), leader])
         target = np.vstack([np.tile(self.follower[:1], (LEAD_TICKS, 1)), self.follower]) + zero
@@ -121,10 +121,6 @@ class LoopResidual:
             kept = difference[..., self.joints]
             rows.append(np.nan_to_num(kept, nan=10.0, posinf=10.0, neginf=-10.0).reshape(len(points), -1))
         return np.concatenate(rows, axis=1)
-
-
-def _at(times: Floats, known: Floats, angles: Floats) -> Floats:
-    return np.column_stack([np.interp(times, known, angles[:, joint]) for joint in range(JOINTS)])
 
 
 def _home(angles: Floats, arm: ArmParameters) -> list[float]:

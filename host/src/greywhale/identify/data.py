@@ -90,9 +90,9 @@ def prepare(log: Log, filter_shift: int | None) -> Prepared:
     for run in runs:
         time = log.time[run.slice]
         even = np.linspace(time[0], time[-1], len(time))
-        piece = _at(even, time, log.follower[run.slice])
+        piece = at(even, time, log.follower[run.slice])
         for found, order in ((smooth, 0), (velocity, 1), (acceleration, 2)):
-            found[run.slice] = _at(time, even, savgol_filter(piece, size, 2, deriv=order, delta=run.period, axis=0))
+            found[run.slice] = at(time, even, savgol_filter(piece, size, 2, deriv=order, delta=run.period, axis=0))
     used = np.zeros(len(log.time), dtype=bool)
     for run in runs:
         used[run.slice] = True
@@ -126,7 +126,8 @@ def _places(velocity: Floats, runs: tuple[Run, ...]) -> Floats:
     return places
 
 
-def _at(times: Floats, known: Floats, angles: Floats) -> Floats:
+def at(times: Floats, known: Floats, angles: Floats) -> Floats:
+    """Each joint's values (rows, 4) between the known times, (times, 4)."""
     return np.column_stack([np.interp(times, known, angles[:, joint]) for joint in range(JOINTS)])
 
 
@@ -231,11 +232,11 @@ def _volts(prepared: Prepared, substeps: int, spacing: Floats) -> Floats:
     moments = (log.time[:, None] + share[None, :] * spacing[:, None]).ravel() - prepared.delay - ACTUATION_S
     period_ms = log.origin.period_ms or 0
     if prepared.period > 1.5e-3 * max(period_ms, 1):
-        return _at(moments, log.time, log.voltage)
+        return at(moments, log.time, log.voltage)
     held = np.clip(np.searchsorted(log.time, moments + 1e-9, side="right") - 1, 0, len(log.time) - 1)
     volts = log.voltage[held]
     # Where rows are missing, the line between their neighbours is the better guess.
     missing = np.repeat(spacing > 1.5 * prepared.period, substeps)
     if missing.any():
-        volts[missing] = _at(moments[missing], log.time, log.voltage)
+        volts[missing] = at(moments[missing], log.time, log.voltage)
     return np.ascontiguousarray(volts)

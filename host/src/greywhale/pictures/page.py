@@ -16,8 +16,8 @@ from typing import Any
 import numpy as np
 
 from greywhale.arm.parameters import JOINT_NAMES
-from greywhale.base.errors import UserError, os_reason
-from greywhale.base.formats.whole import write_whole
+from greywhale.base.errors import UserError
+from greywhale.base.formats.whole import make_folder, write_whole
 from greywhale.base.types import Floats
 from greywhale.pictures.kinds import CHANGING, kind_of
 from greywhale.pictures.looks import GREY, Look
@@ -173,10 +173,10 @@ def save(figure: Figure, path: Path) -> Path:
 def save_into(figure: Figure, folder: Path, name: str) -> Path:
     """`save` into a folder that is made first where it is not there."""
     try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
+        make_folder(folder)
+    except UserError:
         plt.close(figure)
-        raise UserError(f"{folder}: cannot be written: {os_reason(error)}.") from None
+        raise
     return save(figure, folder / name)
 
 

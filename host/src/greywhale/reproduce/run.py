@@ -8,7 +8,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from greywhale.base.errors import UserError, os_reason
+from greywhale.base.formats.whole import make_folder
 from greywhale.base.study import Workers, run_study
 from greywhale.base.types import NotedProgress
 from greywhale.reproduce.request import Request
@@ -22,10 +22,7 @@ SHOWING = {"cli", "drawing", "pages", "pictures", "render"}
 
 def run(request: Request, folder: Path, workers: Workers, report: NotedProgress | None = None) -> Results:
     """Everything that a request asks for, by the tasks' keys. An interrupt keeps what is done in `folder`."""
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise UserError(f"{folder}: cannot be made: {os_reason(error)}.") from None
+    make_folder(folder)
     about = {"request": request.as_dict(), "program": program_digest()}
     tasks = tasks_of(request)
 

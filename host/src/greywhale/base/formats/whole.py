@@ -35,7 +35,7 @@ def require_writable(path: Path) -> None:
     Draft(path).discard()
 
 
-def write_whole(path: str | Path, write: Callable[[IO[bytes]], None]) -> None:
+def write_whole(path: str | Path, write: Callable[[IO[bytes]], object]) -> None:
     """Let `write` fill the file; `path` appears, or is replaced, only when that went well."""
     try:
         draft = Draft(Path(path))
@@ -52,8 +52,12 @@ def write_whole(path: str | Path, write: Callable[[IO[bytes]], None]) -> None:
 
 def write_text(path: str | Path, text: str) -> None:
     """Write `text` as UTF-8."""
-    write_whole(path, lambda file: _write_all(file, text.encode("utf-8")))
+    write_whole(path, lambda file: file.write(text.encode("utf-8")))
 
 
-def _write_all(file: IO[bytes], data: bytes) -> None:
-    file.write(data)
+def make_folder(folder: Path) -> None:
+    """Make a folder, and those above it, where it is not there."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise UserError(f"{folder}: cannot be made: {os_reason(error)}.", BAD_USAGE) from None

@@ -13,8 +13,8 @@ from pathlib import Path
 
 from greywhale.arm import ArmParameters
 from greywhale.base.bench_process import BenchProcess, RunningBench
-from greywhale.base.errors import BAD_USAGE, UserError, os_reason
-from greywhale.base.formats.whole import write_text
+from greywhale.base.errors import BAD_USAGE, UserError
+from greywhale.base.formats.whole import make_folder, write_text
 from greywhale.base.types import NotedProgress, show_no_progress
 from greywhale.board import flash
 from greywhale.board.device import Device
@@ -64,7 +64,7 @@ def run(options: DemoOptions, progress: NotedProgress | None = None) -> DemoResu
     arm = default_arm() if options.arm is None else load_arm(options.arm)
     if options.controller is not None:
         controller_file.load(options.controller)
-    _make_folder(options.out)
+    make_folder(options.out)
     leader = options.leader or options.out / "leader.csv"
     if options.leader is None:
         save_leader(leader, motion)
@@ -196,10 +196,3 @@ def _bench_options(options: DemoOptions) -> list[str]:
     arm = [] if options.arm is None else ["--arm", str(options.arm)]
     blank = [] if flash.find_avrdude() is None else ["--blank"]
     return ["--board", options.board, *blank, "--speed", options.speed, "--seed", str(options.seed), *arm]
-
-
-def _make_folder(folder: Path) -> None:
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise UserError(f"{folder}: cannot be made: {os_reason(error)}.") from None

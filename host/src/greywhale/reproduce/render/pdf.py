@@ -5,7 +5,7 @@ from __future__ import annotations
 import io
 from collections.abc import Sequence
 from pathlib import Path
-from typing import IO, Any
+from typing import Any
 from xml.sax.saxutils import escape
 
 from reportlab import rl_config
@@ -67,7 +67,7 @@ def write_pdf(document: Document, path: Path) -> Path:
     for chapter in document.chapters:
         story += _chapter(chapter)
     pages.build(story, onFirstPage=_number, onLaterPages=_number)
-    write_whole(path, lambda file: _fill(file, made.getvalue()))
+    write_whole(path, lambda file: file.write(made.getvalue()))
     return path
 
 
@@ -75,10 +75,6 @@ def register_fonts() -> None:
     """Make the fonts known by the names that this module gives them."""
     for name, file in FONTS.items():
         pdfmetrics.registerFont(TTFont(name, str(Path(matplotlib.get_data_path()) / "fonts" / "ttf" / f"{file}.ttf")))
-
-
-def _fill(file: IO[bytes], data: bytes) -> None:
-    file.write(data)
 
 
 class _Bookmark(Spacer):
