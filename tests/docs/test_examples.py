@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from tests.docs.running import run_block, run_line
+from tests.docs.running import run_block
 from tools import ROOT
 from tools.docs.examples import blocks, split
 from tools.docs.links import pages
@@ -33,16 +33,3 @@ def test_every_verb_is_shown_by_an_example() -> None:
     ]
     shown = {word for line in lines for word in line.words[1:3]}
     assert set(VERBS) <= shown
-
-
-@pytest.mark.parametrize(
-    ("line", "problem"),
-    [
-        ("greywhale calibrate --secnod 1", "No such option '--secnod'"),
-        ("greywhale evaluate none.csv", "1: greywhale: none.csv: cannot be read"),
-        ("make nothing", "there is no target nothing"),
-        ("rm -rf build", "a test must learn what this is"),
-    ],
-)
-def test_a_command_that_does_not_work_is_found(line: str, problem: str) -> None:
-    assert problem in run_line(line)

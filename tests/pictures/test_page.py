@@ -24,7 +24,6 @@ from greywhale.pictures.page import (
     save_into,
     style,
 )
-from tests.pictures.sight import faults
 
 
 def simple() -> Figure:
@@ -34,26 +33,6 @@ def simple() -> Figure:
     axes.set_xlabel("time [s]")
     axes.set_ylabel("angle [rad]")
     return figure
-
-
-def test_a_good_picture_has_no_faults_and_each_fault_is_seen() -> None:
-    with style():
-        assert faults(simple()) == []
-        figure = simple()
-        axes = figure.axes[0]
-        axes.set_xlabel("time")
-        axes.set_ylabel("")
-        axes.text(0.5, 1.5, "tiny", fontsize=4)
-        figure.text(0.98, 0.5, "over the edge")
-        figure.text(0.5, 0.5, "over the panel")
-        figure.text(0.5, 0.5, "over the same")
-        figure.legend([Line2D([], [], **looks.FLOOR.line)], ["floor"], loc="upper left")
-        said = "\n".join(faults(figure))
-    for fault in (
-        "'time' has no unit", "has no label", "4 pt", "'over the edge' touches", "'over the panel' lies over",
-        "'over the panel' and 'over the same' overlap", "as the legend shows 'floor': --",
-    ):  # fmt: skip
-        assert fault in said
 
 
 @pytest.mark.parametrize("words", [["one"], ["quite a long name of a log", "another that is as long"] * 4])
