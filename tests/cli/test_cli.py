@@ -22,7 +22,6 @@ from greywhale.files.trajectory import Trajectory
 from greywhale.protocol import schema
 from greywhale.protocol.ports import find_ports
 from greywhale.protocol.schema import State
-from greywhale.protocol.table import ParameterTable
 from greywhale_sim.serve import ServeOptions, running
 from tests.board.fake_board import FakeBoard, Faults
 from tests.board.port_board import PortBoard, locked
@@ -185,14 +184,6 @@ def test_stop_begins_with_what_helps_where_it_cannot(capsys: Captured) -> None:
     assert f"{board.port}: the port is in use by process {holder} (" in said
 
 
-def test_stop_clears_a_fault_when_asked(capsys: Captured) -> None:
-    board = FakeBoard()
-    board.fault = schema.Fault.PARAMS
-    with board:
-        assert ask(capsys, "stop", "--port", board.port, "--clear-fault")[0] == 0
-    assert board.fault is schema.Fault.NONE
-
-
 def test_upload_tells_what_changed(capsys: Captured) -> None:
     with FakeBoard() as board:
         code, answer = ask(capsys, "upload", TABLE_10, "--port", board.port)
@@ -203,16 +194,6 @@ def test_upload_tells_what_changed(capsys: Captured) -> None:
     assert "nothing had to change" in capsys.readouterr().out
 
 
-def test_upload_knows_the_controllers_that_come_with_it(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Captured
-) -> None:
-    monkeypatch.chdir(tmp_path)
-    with FakeBoard() as board:
-        assert ask(capsys, "upload", "table_10", "--port", board.port)[0] == 0
-        code, answer = ask(capsys, "upload", TABLE_10, "--port", board.port)
-    assert (code, answer["changed"]) == (0, [])
-
-
 def test_a_bad_controller_is_refused_before_the_board_is_touched(tmp_path: Path, capsys: Captured) -> None:
     bad = tmp_path / "bad.toml"
     bad.write_text(Path(TABLE_10).read_text().replace("Pce_b = 1.0", "Pce_b = 1.5", 1))
@@ -221,22 +202,6 @@ def test_a_bad_controller_is_refused_before_the_board_is_touched(tmp_path: Path,
         assert board.requests == []
     assert code == 1
     assert "Pce_b is 1.5, but it must be at least 0.01 and at most 1" in answer["error"]
-
-
-def test_record_and_evaluate(tmp_path: Path, capsys: Captured) -> None:
-    out = tmp_path / "log.csv"
-    with FakeBoard() as board:
-        code, answer = ask(capsys, "record", "--port", board.port, "-o", str(out), "-s", "0.3", "--enable")
-        assert board.state is State.DISABLED
-    assert code == 0
-    assert (answer["samples"], answer["dropped"], answer["log"]) == (300, 0, str(out))
-    assert read_log(out).origin.table == ParameterTable.defaults()
-    picture = tmp_path / "picture.png"
-    code, answer = ask(capsys, "evaluate", str(out), "--picture", str(picture))
-    assert code == 0
-    assert answer["logs"][0]["samples"] == 300
-    assert len(answer["logs"][0]["joints"]) == 4
-    assert picture.read_bytes().startswith(b"\x89PNG")
 
 
 def test_params_set_get_backup_diff_restore(tmp_path: Path, capsys: Captured) -> None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from xml.etree import ElementTree as xml
 
 import pytest
 from click.testing import CliRunner
@@ -35,17 +34,6 @@ def test_one_joint_goes_into_the_named_file(tmp_path: Path) -> None:
     out = tmp_path / "one.fis"
     assert run("--fis", str(paper_table("before_tuning")), "--joint", "2", "-o", str(out))["written"] == [str(out)]
     assert out.read_text().startswith("[System]\nName='before_tuning, joint 2'")
-
-
-@pytest.mark.parametrize(
-    ("option", "root", "joints"), [("--urdf", "robot", "joint"), ("--mjcf", "mujoco", ".//body/joint")]
-)
-def test_an_arm_becomes_a_model_with_four_hinges(tmp_path: Path, option: str, root: str, joints: str) -> None:
-    out = tmp_path / "arm.xml"
-    run(option, "white_box", "--out", str(out))
-    document = xml.parse(out).getroot()
-    assert document.tag == root
-    assert len(document.findall(joints)) == 4
 
 
 @pytest.mark.parametrize(

@@ -159,19 +159,6 @@ def assert_bounds_hold_even_for_what_the_board_ran_before(answer: dict[str, Any]
     assert widths.max() <= 0.03 + 1e-4
 
 
-@pytest.mark.slow
-def test_doubts_go_along_into_text_and_file(no_floors: None, tmp_path: Path, capsys: Captured) -> None:
-    model = write_model(tmp_path / "model.toml", log=[log_facts()])
-    out = tmp_path / "controller.toml"
-    assert entry.run(["tune", str(model), "--out", str(out), *QUICK, "--force"]) == 0
-    doubt = "it was not validated on a second log."
-    assert doubt in capsys.readouterr().out
-    tuning = controller.load(out).tuning
-    assert tuning is not None
-    assert tuning["doubts"] == [doubt]
-    assert f"# Doubt: {doubt}" in out.read_text(encoding="utf-8")
-
-
 @pytest.mark.parametrize(
     ("tuning", "warnings"),
     [

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import replace
 from pathlib import Path
 
@@ -49,17 +48,6 @@ def test_text_model_and_pictures(
 
 
 @pytest.mark.slow
-def test_json_is_one_object(
-    found: IdentificationResult, recorded: Recorded, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    assert run([*arguments(recorded, tmp_path), "--json"]) == 0
-    facts = json.loads(capsys.readouterr().out)
-    assert facts["status"] == "complete"
-    assert facts["files"] == [str(tmp_path / "model.toml")]
-    assert len(facts["log"]) == 3
-
-
-@pytest.mark.slow
 def test_interrupt_writes_the_model_and_says_so(
     outcome: IdentificationResult,
     recorded: Recorded,
@@ -75,10 +63,3 @@ def test_interrupt_writes_the_model_and_says_so(
     assert model.identification is not None
     assert model.identification["status"].startswith("unfinished")
     assert model.name.endswith("(unfinished)")
-
-
-def test_missing_folder_is_found_before_anything_runs(
-    recorded: Recorded, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    assert run([*arguments(recorded, tmp_path / "nowhere")]) == 2
-    assert "does not exist" in capsys.readouterr().err

@@ -23,15 +23,6 @@ QUICK = ("compare", "--functions", "sphere,ackley", "--methods", "gwo, de", "--d
 BUDGET = ("--budget", "40")
 
 
-def test_json_is_one_object(capsys: Captured) -> None:
-    assert entry.run([*QUICK, *BUDGET, "--workers", "1", "--json"]) == 0
-    out = capsys.readouterr().out
-    assert out.count("\n") == 1
-    answer = json.loads(out)
-    assert list(answer["median_cost"]["shifted"]["ackley"]) == ["gwo", "de"]
-    assert (answer["dimensions"], answer["budget"], answer["seeds"]) == (3, 40, 3)
-
-
 def test_text_tables_and_files(capsys: Captured, tmp_path: Path) -> None:
     table, picture = tmp_path / "r.csv", tmp_path / "r.png"
     assert entry.run([*QUICK, *BUDGET, "--out", str(table), "--out", str(picture), "--seed", "5"]) == 0
