@@ -8,7 +8,6 @@ from pathlib import Path
 
 import pytest
 
-from greywhale.base.errors import UserError
 from greywhale.board.device import Device
 from greywhale.board.upload import upload_controller
 from greywhale.protocol import schema
@@ -56,10 +55,3 @@ def test_noise_on_the_line_delays_but_corrupts_nothing(start: Start) -> None:
         assert (status.state, status.fault) == (State.DISABLED, Fault.NONE)
     with Device(bench.port) as device:
         assert device.hello.param_crc == crc
-
-
-@pytest.mark.slow
-def test_a_board_without_firmware_is_silent_and_that_is_said(start: Start) -> None:
-    bench = start("--blank")
-    with pytest.raises(UserError, match="flash"):
-        Device(bench.port, quiet_s=0.5, patience_s=1.0)

@@ -7,7 +7,6 @@ from pathlib import Path
 
 import pytest
 
-from greywhale.base.errors import UserError
 from greywhale.board import flash
 from greywhale.board.flash.bootloader import Bootloader, Dialect, find_bootloader
 from greywhale.cli.story import BenchProcess
@@ -51,19 +50,3 @@ def test_the_real_bootloaders_tell_their_board(board: str, expected: Bootloader)
     dialects = [Dialect("wiring", 115200), Dialect("arduino", 115200), Dialect("arduino", 57600)]
     with lock_step("--blank", "--board", board) as bench:
         assert find_bootloader(bench.port, dialects, []) == expected
-
-
-@pytest.mark.slow
-def test_neither_a_wrong_name_nor_the_other_boards_image_reaches_a_board(monkeypatch: pytest.MonkeyPatch) -> None:
-    with lock_step("--blank") as bench:
-        monkeypatch.setattr(flash.flasher, "board_of", lambda port: "mega")
-        with pytest.raises(UserError, match="this port belongs to an Arduino Mega 2560"):
-            flash.flash(bench.port, "nano")
-        with pytest.raises(UserError, match="this image is for an Arduino Nano"):
-            flash.flash(bench.port, hex_file=NANO_IMAGE)
-        monkeypatch.setattr(flash.flasher, "board_of", lambda port: None)  # as a clone that does not say what it is
-        with pytest.raises(UserError, match="the bootloader of an Arduino Mega 2560 answers"):
-            flash.flash(bench.port, "nano", hex_file=NANO_IMAGE)
-        with pytest.raises(UserError, match="this image is for an Arduino Nano"):
-            flash.flash(bench.port, hex_file=NANO_IMAGE)
-        assert bench.command("status")["in_bootloader"]
