@@ -4,14 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from greywhale.base.errors import BAD_USAGE, UserError, counted, require_within
-
-
-@pytest.mark.parametrize(
-    ("number", "words"), [(0, "0 samples"), (1, "1 sample"), (2, "2 samples"), (1000, "1000 samples")]
-)
-def test_one_thing_is_no_plural(number: int, words: str) -> None:
-    assert counted(number, "sample") == words
+from greywhale.base.errors import BAD_USAGE, UserError, require_within
 
 
 def test_numbers_keep_their_range() -> None:

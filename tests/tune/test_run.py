@@ -140,13 +140,6 @@ def test_an_interrupted_tuning_goes_on_to_the_same_bytes_on_any_number_of_thread
 
 
 @pytest.mark.slow
-def test_a_journal_of_another_tuning_is_refused(model: Model, tuned: tuple[TuningResult, Path]) -> None:
-    for request, words in (({"seed": 1}, "its seed is 0"), ({"bounds": {"Ku": (3.0, 5.0)}}, "its bounds is {}")):
-        with pytest.raises(UserError, match=words):
-            run(model, journal=tuned[1], resume=True, **request)
-
-
-@pytest.mark.slow
 def test_a_finished_journal_needs_no_simulation_and_an_interrupt_while_judging_keeps_its_best(
     model: Model, tuned: tuple[TuningResult, Path], monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -5,7 +5,6 @@ What damages and locks it is refused as in every file of checked lines: tests/ba
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Any
 
@@ -61,11 +60,3 @@ def test_the_file_of_another_version_is_refused(tmp_path: Path, monkeypatch: pyt
     monkeypatch.setattr("greywhale.base.study.results.versions", lambda: other)
     with pytest.raises(UserError, match=r"its versions is .*, now it is {\"greywhale\": \"9\.9\.9\""):
         run_study(TASKS, SerialWorkers(), path, about=ABOUT)
-
-
-def test_lines_are_json(tmp_path: Path) -> None:
-    heading, *results = (json.loads(line) for line in written(tmp_path / "r").splitlines())
-    assert heading["request"]["budget"] == 500
-    assert heading["request"]["number of tasks"] == 2
-    assert [line["task"] for line in results] == ["draw 0", "draw 1"]
-    assert results[1]["result"]["of"] == "seed 1"

@@ -5,7 +5,6 @@ What damages and locks it is refused as in every file of checked lines: tests/ba
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Any
 
@@ -57,9 +56,3 @@ def test_what_is_no_cost_is_refused(tmp_path: Path, cost: bytes) -> None:
     path.write_bytes(written(path).replace(b"0.1", cost, 1))
     with pytest.raises(UserError, match="line 2 is not a line"):
         TuningJournal(path, REQUEST, resume=True)
-
-
-def test_lines_are_json(tmp_path: Path) -> None:
-    heading, *batches = (json.loads(line) for line in written(tmp_path / "j").splitlines())
-    assert heading["request"]["seed"] == 1
-    assert [batch["stage"] for batch in batches] == ["stage 0", "stage 1", "stage 2"]
