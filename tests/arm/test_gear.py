@@ -28,25 +28,6 @@ def test_link_moves_freely_by_the_gap_and_then_against_the_teeth(make_arm: Any) 
         assert travel[joint] == pytest.approx(2 * gear.half_gap + 2 * torque / gear.stiffness, rel=1e-3)
 
 
-def test_hysteresis_loop_is_as_wide_as_the_gap(make_arm: Any) -> None:
-    """Driven slowly to and fro with a light brake on the link, motor and link differ by the half gap either way."""
-    parameters = make_arm(gravity=0.0)
-    gear = parameters.joint[3].gear
-    actuator = parameters.actuator(3)
-    arm = Arm(parameters)
-    lag = {1.0: [], -1.0: []}  # type: dict[float, list[float]]
-    drag = 0.01
-    for step in range(8000):
-        direction = 1.0 if (step // 2000) % 2 == 0 else -1.0
-        arm.set_load([0.0, 0.0, 0.0, -direction * drag])
-        volts = direction * (1.2 * parameters.joint[3].friction.breakaway + drag) / actuator.torque_per_volt
-        arm.step([0.0, 0.0, 0.0, volts], 1e-3)
-        if step % 2000 > 1000:
-            lag[direction].append(arm.motor_angles[3] - arm.angles[3])
-    width = np.median(lag[1.0]) - np.median(lag[-1.0])
-    assert width == pytest.approx(2 * gear.half_gap + 2 * drag / gear.stiffness, rel=0.01)
-
-
 def test_teeth_hold_under_violent_driving() -> None:
     """Motor and link never part by more than the gap and the bending that the torques at hand can cause."""
     parameters = default_arm()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from greywhale_sim.pacing import GIVE_UP_S, UNREAD_LIMIT, Pacer, wants_real_time
+from greywhale_sim.pacing import GIVE_UP_S, Pacer, wants_real_time
 
 
 class Clock:
@@ -64,24 +64,6 @@ def test_a_short_lag_is_made_up_for_a_long_one_is_counted(clock: Clock, pacer: P
     waited = len(clock.waits)
     pacer.pace(GIVE_UP_S + 0.001, real_time=True)
     assert clock.waits[waited:] == pytest.approx([0.001]), "no catching up after a long lag"
-
-
-def test_time_stands_still_until_the_host_has_read(clock: Clock, pacer: Pacer) -> None:
-    queue = [UNREAD_LIMIT + 500]
-
-    def backlog(limit: int) -> int:
-        queue[0] -= 100
-        return queue[0]
-
-    pacer.drain(backlog, lambda: True)
-    assert UNREAD_LIMIT - 100 < queue[0] <= UNREAD_LIMIT
-    assert len(clock.waits) == 4
-
-
-def test_a_host_that_goes_away_ends_the_wait(clock: Clock, pacer: Pacer) -> None:
-    answers = iter([True, True, False])
-    pacer.drain(lambda limit: 4096, lambda: next(answers))
-    assert len(clock.waits) == 2
 
 
 @pytest.mark.parametrize(

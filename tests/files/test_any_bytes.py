@@ -118,15 +118,6 @@ def test_a_spoilt_file_is_a_value_or_a_sentence(tmp_path: Path, kind: str, data:
     assert is_a_sentence(told(read, path))
 
 
-@pytest.mark.parametrize("kind", FILES)
-@given(content=st.binary(max_size=200))
-@settings(deadline=None, max_examples=30, suppress_health_check=[HealthCheck.function_scoped_fixture])
-def test_any_bytes_are_a_sentence(tmp_path: Path, kind: str, content: bytes) -> None:
-    path = tmp_path / "file"
-    path.write_bytes(content)
-    assert is_a_sentence(told(FILES[kind][1], path))
-
-
 MONSTERS = {
     "brackets": (b"a = " + b"[" * 5000, "nested more than"),
     "tables": (b"a = " + b"{a = " * 5000, "nested more than"),

@@ -104,17 +104,6 @@ def test_avrdude_gets_the_boards_own_settings_and_the_firmware_is_greeted(
     assert hello.board is schema.Board.MEGA2560
 
 
-@pytest.mark.parametrize("baud", [115200, 57600])
-def test_avrdude_gets_the_speed_of_a_nanos_bootloader(
-    baud: int, told: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(module, "Device", lambda port: pytest.fail("greeted"))
-    image = write_image(tmp_path / "firmware.hex", NANO.signature)
-    with Version1(baud, ATMEGA328P) as line, pytest.raises(pytest.fail.Exception, match="greeted"):
-        module.flash(line.port, "nano", hex_file=image)
-    assert told.read_text().endswith(f"-c arduino -p atmega328p -P {line.port} -D -U flash:w:{image}:i -b {baud}")
-
-
 @pytest.mark.parametrize(
     ("bootloader", "named", "words"),
     [
