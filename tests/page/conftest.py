@@ -4,15 +4,12 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Iterator
-from pathlib import Path
 
 import pytest
 from playwright.sync_api import BrowserContext, Page, expect
 
 from tests.page import stage as stages
-from tests.page.serve_folder import Site, serve
 from tests.page.stage import Stage
-from tools.site.build import build
 
 
 @pytest.fixture(scope="session")
@@ -27,20 +24,6 @@ def at_rest(context: BrowserContext, stage: Stage) -> Iterator[Page]:
     with stages.visit(context, stage) as visit:
         visit.page.locator("button.enable:enabled").wait_for()
         yield visit.page
-
-
-@pytest.fixture(scope="session")
-def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The page with a bench inside, built."""
-    made: Path = tmp_path_factory.mktemp("site")
-    build(made)
-    return made
-
-
-@pytest.fixture
-def site(folder: Path) -> Iterator[Site]:
-    with serve(folder) as served:
-        yield served
 
 
 @pytest.fixture(scope="module")

@@ -23,8 +23,8 @@ from greywhale.fuzzy.settings import ANGLE_UNIT, SET_UNIT, JointSettings
 from greywhale.protocol.joints import ALL
 from greywhale.protocol.schema import LAYOUT, PARAMETER_BY_NAME, PARAMETERS, Refusal
 from greywhale.protocol.table import ParameterTable
-from tests.page.calibrations import calibrations
-from tests.page.tuning import tuning
+from tests.page.site.calibrations import calibrations
+from tests.page.site.tuning import tuning
 from tools import ROOT
 
 PAGE = ROOT / "host" / "web"

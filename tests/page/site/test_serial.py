@@ -23,8 +23,8 @@ from greywhale_sim.hands import ENDS_DEG
 from greywhale_sim.lockstep import LockStepBench
 from greywhale_sim.words import lock_step
 from tests.page.barriers import DARK_AND_NARROW, require_no_barrier
-from tests.page.false_serial import connected
-from tests.page.serve_folder import Site
+from tests.page.site.false_serial import connected
+from tests.page.site.serve_folder import Site
 
 pytestmark = pytest.mark.slow
 

@@ -13,7 +13,7 @@ from playwright.sync_api import BrowserContext, Page
 from greywhale.protocol.transport import BAUD, LINES, Line
 from greywhale_sim.lockstep import LockStepBench
 from tests.page import stage as stages
-from tests.page.serve_folder import Site
+from tests.page.site.serve_folder import Site
 
 # So long the board lives at a time: until it has answered what it was asked, and longer where it was asked nothing.
 ANSWER_S, TURN_S, BOOTLOADER_TURN_S = 0.01, 0.06, 0.04

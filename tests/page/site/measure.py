@@ -1,4 +1,4 @@
-"""`python -m tests.page.measure_site [MINUTES]`: what the page with a bench inside weighs and costs, as JSON lines.
+"""`python -m tests.page.site.measure [MINUTES]`: what the page with a bench inside weighs and costs, as JSON lines.
 
 Times real time are of the bench alone, the motors on, a hand that swings and a sample each tick, in Node.js and in a
 worker of the browser. The first motion counts from the page's address to the first sample in which the follower has
@@ -25,7 +25,7 @@ from greywhale.protocol.frames import FrameDecoder, encode_frame
 from tests.page import stage as stages
 from tests.page.measure import metric, samples_lost
 from tests.page.measure_memory import MINUTE_MS, browser_megabytes
-from tests.page.serve_folder import serve
+from tests.page.site.serve_folder import serve
 from tools.setup import page
 from tools.site.build import build
 

@@ -17,7 +17,7 @@ from greywhale.files.log import read_log
 from tests.page import stage as stages
 from tests.page.barriers import DARK_AND_NARROW, require_no_barrier
 from tests.page.drag import drag, value_of
-from tests.page.serve_folder import Site, serve
+from tests.page.site.serve_folder import Site, serve
 from tools import ROOT
 from tools.docs.links import anchors
 
