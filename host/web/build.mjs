@@ -66,7 +66,7 @@ async function runTests(out, args) {
     outExtension: { ".js": ".mjs" },
   });
   const files = tests.map((name) => join(out, name.replace(/ts$/, "mjs")));
-  return spawnSync(process.execPath, ["--test", ...args, ...files], { stdio: "inherit" }).status ?? 1;
+  return spawnSync(process.execPath, ["--test", "--test-isolation=none", ...args, ...files], { stdio: "inherit" }).status ?? 1;
 }
 
 const [what, ...args] = process.argv.slice(2);

@@ -26,6 +26,7 @@ from greywhale.protocol.table import ParameterTable
 from tests.page.site.calibrations import calibrations
 from tests.page.site.tuning import tuning
 from tools import ROOT
+from tools.setup.page import node
 
 PAGE = ROOT / "host" / "web"
 NAMES = tuple(field.name for field in fields(JointSettings))
@@ -180,7 +181,6 @@ def test_link_client_samples_law_files_bench_and_tuner_give_what_python_gives(
     given = {"CALIBRATIONS": calibrated, "GOLDEN": golden, "LAW": law, "CONTROLLER_FILES": files, "TUNING": tuned}
     given |= {"PARAMETER_FILES": parameters, "SITE": next(path for path in folder.iterdir() if path.is_dir())}
     environment = {**os.environ, **{name: str(path) for name, path in given.items()}}
-    done = subprocess.run(
-        ["node", "build.mjs", "test"], cwd=PAGE, env=environment, capture_output=True, text=True, check=False
-    )
+    command = [str(node() / "bin/node"), "build.mjs", "test"]
+    done = subprocess.run(command, cwd=PAGE, env=environment, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
