@@ -20,13 +20,6 @@ from tests.board.fake_board import FakeBoard, Faults, open_device, served
 from tests.board.port_board import PortBoard
 
 
-def test_greeting_tells_who_is_there() -> None:
-    with served() as (_, device):
-        assert device.firmware_version == "0.1.0"
-        assert device.hello.param_crc == schema.param_crc(schema.DEFAULTS)
-        assert device.status().state is State.DISABLED
-
-
 @pytest.mark.timeout(60)
 def test_nothing_is_sent_before_the_firmware_is_heard() -> None:
     # The Mega's bootloader would stay for seconds if it saw a byte. Without end, the quiet time can only be ended by
@@ -191,19 +184,6 @@ def test_a_restart_during_a_request_is_named() -> None:
         board.say(board.own_hello())
         with pytest.raises(UserError, match="restarted.*the reset pin"):
             device.status()
-
-
-def read_for_ever(device: Device) -> None:
-    while True:
-        device.samples()
-
-
-def test_an_unplugged_cable_is_one_sentence() -> None:
-    with served() as (board, device):
-        board.faults.unplug_at = 1
-        with pytest.raises(UserError, match=rf"^{board.port}: the port went away"):
-            device.telemetry(1)
-            read_for_ever(device)
 
 
 def test_wrong_telemetry_echo_is_noticed() -> None:

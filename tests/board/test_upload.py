@@ -39,23 +39,6 @@ def test_a_controller_replaces_its_own_parameters_and_no_others() -> None:
     assert raw["joint0.ku_mv"] == 15000
 
 
-def test_uploading_twice_changes_nothing_the_second_time() -> None:
-    with FakeBoard() as board, open_device(board) as device:
-        first = upload.upload_controller(device, TABLE_10)
-        second = upload.upload_controller(device, TABLE_10)
-    assert second.param_crc == first.param_crc
-    assert second.changed == ()
-
-
-def test_lost_answers_do_not_harm_an_upload() -> None:
-    with FakeBoard() as board, open_device(board) as device:
-        for request in (schema.ParamSetRequest, schema.ParamApplyRequest, schema.ParamSaveRequest):
-            board.faults.lose[request.TYPE] = 2
-        done = upload.upload_controller(device, TABLE_10)
-        assert board.stored == board.running
-        assert done.param_crc == schema.param_crc(board.running)
-
-
 def test_a_wrong_echo_changes_nothing() -> None:
     with FakeBoard(Faults(echo_error=1)) as board, open_device(board) as device:
         with pytest.raises(UserError, match="period_ms = 1, .* parameter 0 = 2"):

@@ -7,7 +7,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from greywhale.base.errors import UserError
 from greywhale.board.lead import Plan
 from greywhale.cli import entry
 from greywhale.cli.replay import MOTIONS, SHARE
@@ -22,12 +21,6 @@ def test_a_named_motion_is_as_fast_as_a_board_can_be_led_and_no_faster(name: str
     fastest = np.abs(np.diff(plan.angles, axis=0)).max() / POINT_S
     assert 0.8 * FASTEST_LED_RAD_S < fastest <= FASTEST_LED_RAD_S
     assert plan.angles.max() == pytest.approx(1.0)
-
-
-@pytest.mark.parametrize("name", MOTIONS)
-def test_the_steep_ones_of_a_hand_are_refused(name: str) -> None:
-    with pytest.raises(UserError, match="give it more time"):
-        Plan.of(MOTIONS[name](), np.zeros(JOINTS), LIMITS)
 
 
 def test_any_other_name_is_a_file(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -6,10 +6,8 @@ import os
 import signal
 import subprocess
 import sys
-import threading
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import pytest
 
@@ -19,7 +17,7 @@ from greywhale.board.upload import upload_controller
 from greywhale.cli.story import BenchProcess
 from greywhale.files.log import read_log
 from greywhale.motion import evaluate
-from greywhale.protocol.schema import State, StopReason
+from greywhale.protocol.schema import State
 from greywhale_sim.__main__ import main
 from greywhale_sim.serve import ServeOptions, serve
 from tools import ROOT
@@ -27,21 +25,6 @@ from tools import ROOT
 TABLES = ROOT / "shared" / "fuzzy_tables"
 
 Start = Callable[..., BenchProcess]
-
-
-@pytest.mark.slow
-def test_every_open_resets_the_board(start_bench: Start) -> None:
-    bench = start_bench()
-    with Device(bench.port) as device:
-        assert device.hello.board.key == "mega2560"
-        first = device.status().tick
-        assert device.status().tick > first
-    resets = bench.command("status")["resets"]
-    with Device(bench.port) as device:
-        assert device.status().stop_reason is StopReason.RESET
-    status = bench.command("status")
-    assert status["resets"] == resets + 1
-    assert status["resets_by_host"] == 2
 
 
 @pytest.mark.slow
@@ -145,21 +128,3 @@ def test_signals_end_serving_cleanly(leader_file: Path, tmp_path: Path, number: 
     serve(ServeOptions(leader=leader_file, link=link), on_ready)
     assert ready == [True]
     assert not link.is_symlink()
-
-
-@pytest.mark.slow
-def test_threads_can_watch_a_bench_while_it_is_used(start_bench: Start, tmp_path: Path) -> None:
-    """The control line and the serial port do not wait for each other."""
-    bench = start_bench()
-    seen: list[dict[str, Any]] = []
-    with Device(bench.port) as device:
-        watcher = threading.Thread(target=lambda: seen.extend(bench.command("status") for _ in range(20)))
-        watcher.start()
-        record(device, tmp_path / "log.csv", 2.0)
-        watcher.join()
-    times = [status["time_s"] for status in seen]
-    assert times == sorted(times)
-    assert len(times) == 20
-
-
-SECONDS = 15

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import sys
 from collections.abc import Iterator
 from contextlib import ExitStack
 from pathlib import Path
@@ -15,9 +14,7 @@ from jsonschema import Draft202012Validator
 from greywhale.board.device import Device
 from greywhale.board.stream import stream
 from greywhale.board.upload import read_parameters, upload_set
-from greywhale.cli.entry import run
 from greywhale.cli.story import RunningBench
-from greywhale.files.arm import default_arm
 from greywhale.protocol.firmware import ANGLE_LSB
 from tools.docs.schemas import schemas
 from tools.support.hands import SECOND_DEG, Hands, bench_of, mounted_anyhow, run_calibrate
@@ -64,13 +61,3 @@ def test_arms_mounted_anyhow_show_true_angles_after_two_known_poses(benches: Exi
         table = read_parameters(device)
     assert table.each("joint", "motor_sign")[1] == -1
     assert table["joint2.ratio"] == HALF
-
-
-def test_an_input_that_ends_changes_nothing(
-    benches: ExitStack, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    bench = benches.enter_context(bench_of(default_arm(), tmp_path))
-    with Path("/dev/null").open() as nothing:
-        monkeypatch.setattr(sys, "stdin", nothing)
-        assert run(["calibrate", "--port", bench.port]) == 1
-    assert "the input ended in the middle of the calibration. Nothing was stored." in capsys.readouterr().err
