@@ -23,16 +23,13 @@ from greywhale.cli.story import BenchProcess, RunningBench
 from greywhale.commission import arm_on_port
 from greywhale.commission.arm_on_port import connected
 from greywhale.commission.motions import JointRange, check_motion, first_motion
-from greywhale.files.arm import default_arm
 from greywhale.files.log import read_log
-from greywhale.files.model import to_toml
 from greywhale.files.trajectory import Trajectory
 from greywhale.protocol.schema import State
 from greywhale.protocol.table import ParameterTable
 from greywhale.simulate.controllers import controllers_of
 from greywhale_sim.lockstep import LockStepBench
 from greywhale_sim.words import lock_step
-from tests.commission.test_start import with_joint, with_pot
 
 pytestmark = pytest.mark.slow
 BEFORE = ParameterTable.defaults()
@@ -160,22 +157,3 @@ def test_ctrl_c_stops_the_motors_and_says_how_to_go_on(
     steps = [json.loads(line).get("step") for line in (tmp_path / "commission.journal").read_text().splitlines()]
     assert "first motion" in steps
     assert "before" not in steps
-
-
-def test_a_blocked_arm_and_an_uncalibrated_one_are_refused_in_a_sentence(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    blocked = with_joint(default_arm(), 1, "friction", coulomb=50.0, breakaway=50.0)
-    arms = {"blocked": blocked, "other": with_pot(default_arm(), 3, centre=0.5)}
-    for name, arm in arms.items():
-        (tmp_path / f"{name}.toml").write_text(to_toml(arm, {}).replace("[identification]\n", ""), encoding="utf-8")
-    with lock_step("--arm", str(tmp_path / "blocked.toml")) as bench:
-        assert run(["-q", "commission", "-p", bench.port, "-o", str(tmp_path / "one")]) == 1
-        first = capsys.readouterr().err
-        arguments = ["-p", bench.port, "-o", str(tmp_path / "two"), "--arm", str(tmp_path / "other.toml")]
-        assert run(["-q", "commission", *arguments]) == 1
-        second = capsys.readouterr().err
-        assert running(bench) == (BEFORE, State.DISABLED)
-    assert "joint 1 (shoulder pitch) did not move when led" in first
-    assert "joint 3 (wrist roll) was never calibrated" in second
-    assert first.count("\n") == second.count("\n") == 1

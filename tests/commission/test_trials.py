@@ -84,16 +84,6 @@ def test_the_summary_says_what_is_borne_and_fits_a_terminal(trials: Trials, rig:
     assert max(map(len, table)) <= 80
 
 
-def test_a_joint_that_hunts_is_stopped_and_named(trials: Trials, rig: SimulatedRig) -> None:
-    play_before(trials, rig)
-    trial = play(trials, rig, stiffer(trials, [2], WILD))
-    assert trial.stopped == "joint 2 hunted"
-    assert trial.verdicts[2].hunts
-    assert not trial.verdicts[0].faults
-    assert not trial.passed
-    assert trial.traces.leader.shape[0] < 10_000
-
-
 def test_what_is_in_the_journal_needs_no_arm(trials: Trials, rig: SimulatedRig) -> None:
     """But the logs as they were recorded."""
     sets = [stiffer(trials, [0], BETTER), stiffer(trials, [3], WILD)]

@@ -63,18 +63,6 @@ def test_bad_files_get_one_sentence(tmp_path: Path, text: str, parts: list[str])
     assert [part for part in (str(path), *parts) if part not in caught.value.message] == []
 
 
-def test_files_that_are_no_text_or_not_there(tmp_path: Path) -> None:
-    (tmp_path / "picture.png").write_bytes(b"\x89PNG\xff\xfe\x00")
-    for name in ("picture.png", "missing.csv", "."):
-        with pytest.raises(UserError, match=r"not UTF-8|cannot be read"):
-            load_leader(tmp_path / name)
-
-
-def test_unwritable_folder_leaves_nothing(tmp_path: Path) -> None:
-    with pytest.raises(UserError, match="cannot be written"):
-        save_leader(tmp_path / "missing" / "leader.csv", human_reaches(duration_s=4.0))
-
-
 def test_the_largest_step_of_the_project_is_not_too_fast(tmp_path: Path) -> None:
     save_leader(tmp_path / "steps.csv", multi_steps([-POT_RANGE_RAD, POT_RANGE_RAD], [1.0, 1.0]))
     assert load_leader(tmp_path / "steps.csv").angles.max() == POT_RANGE_RAD

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from greywhale.base.errors import BAD_USAGE, UserError
-from greywhale.files.outputs import require_files, require_folder, require_new, require_no_files
+from greywhale.files.outputs import require_files, require_folder
 
 
 @pytest.fixture
@@ -69,20 +69,3 @@ def test_folder_that_can_be_made_is_not_made_yet(folder: Path) -> None:
     require_folder(Path("new/deep"), "pictures")
     require_folder(None, "pictures")
     assert sorted(str(one.relative_to(folder)) for one in folder.rglob("*")) == ["file", "there"]
-
-
-def test_what_is_there_is_written_over_only_when_told(folder: Path) -> None:
-    with pytest.raises(UserError) as refused:
-        require_new(False, None, Path("new"), Path("there/../file"))
-    told = "exists already; write over it with --overwrite, or name another"
-    assert sentence_of(refused) == f"there/../file: {told} file."
-    require_new(True, Path("file"))
-    require_new(False, Path("new"), None)
-    (folder / "there" / "responses_2.png").write_text("kept")
-    with pytest.raises(UserError) as refused:
-        require_no_files(False, Path("there"), "sets.png", "responses_*.png")
-    assert sentence_of(refused) == f"there/responses_2.png: {told} folder."
-    require_no_files(True, Path("there"), "responses_*.png")
-    require_no_files(False, Path("there"), "sets.png")
-    require_no_files(False, Path("none"), "sets.png")
-    require_no_files(False, None, "sets.png")

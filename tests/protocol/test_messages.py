@@ -103,19 +103,6 @@ def test_a_value_that_does_not_fit_its_field_is_refused() -> None:
         schema.EnableRequest(70000).pack()
 
 
-def test_a_request_reads_its_own_reply() -> None:
-    reply = schema.ParamSetRequest(3, -7).reply(schema.ParamSetReply(3, -7).pack())
-    assert reply == schema.ParamSetReply(3, -7)
-    assert schema.ParamSetReply.TYPE == schema.ParamSetRequest.TYPE | schema.REPLY_BIT
-
-
-def test_hello_says_its_protocol_first() -> None:
-    hello = schema.HelloReply(
-        7, 1, 2, 3, 4, schema.Board.NATIVE, 5, schema.ParamSource.DEFAULTS, schema.ResetCause.POWER_ON
-    )
-    assert hello.pack()[0] == 7
-
-
 @pytest.mark.parametrize("enum", [schema.Fault, schema.NackCode, schema.Refusal])
 def test_every_refusal_and_fault_says_what_to_do(enum: type[Described]) -> None:
     for member in enum:

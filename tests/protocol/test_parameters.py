@@ -42,21 +42,6 @@ def test_defaults_are_the_golden_bytes(firmware: Firmware) -> None:
     check_parameters(DEFAULTS)
 
 
-def test_defaults_are_the_paper_before_tuning() -> None:
-    def physical(name: str) -> float:
-        parameter = PARAMETER_BY_NAME[name]
-        return parameter.to_physical(parameter.default)
-
-    assert [physical(f"joint{j}.kp") for j in range(4)] == pytest.approx([0.513, 0.590, 0.630, 0.782], abs=1e-5)
-    assert [physical(f"joint{j}.kd") for j in range(4)] == pytest.approx([0.160, 0.147, 0.244, 0.169], abs=1e-5)
-    assert [physical(f"joint{j}.ki") for j in range(4)] == pytest.approx([0.313, 0.201, 0.251, 0.233], abs=1e-5)
-    assert [physical(f"joint{j}.ku_mv") for j in range(4)] == [15000, 11550, 13150, 14500]
-    sets = ["ne_c", "ze_a", "ze_c", "pe_b", "nce_c", "zce_a", "zce_c", "pce_b"]
-    assert [physical(f"joint2.{name}") for name in sets] == pytest.approx(
-        [-0.3, -0.3, 0.3, 0.3, -0.1, -0.1, 0.1, 0.1], abs=1 / 16384
-    )
-
-
 def test_the_default_potentiometer_turns_300_degrees() -> None:
     scale = PARAMETER_BY_NAME["leader0.scale"]
     assert scale.to_physical(scale.default) * 16368 == pytest.approx(math.radians(300), rel=1e-4)

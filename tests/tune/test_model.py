@@ -180,11 +180,6 @@ def test_a_number_that_no_motion_feels_may_be_uncertain(tmp_path: Path) -> None:
     assert not load_model(write_model(tmp_path / "model.toml", facts=facts)).doubts
 
 
-def test_numbers_edited_after_the_identification_are_found(tmp_path: Path) -> None:
-    path = write_model(tmp_path / "model.toml", facts=facts_of(load_arm("white_box")))
-    assert "not those that were identified (joint0.torque_per_volt is" in refused(path)
-
-
 def other_arm(**link: float) -> ArmParameters:
     data = default_arm().model_dump()
     links = [one | link if index == 1 else one for index, one in enumerate(data["link"])]
@@ -195,19 +190,6 @@ def test_a_model_of_another_arm_is_found(tmp_path: Path) -> None:
     path, arm = write_model(tmp_path / "model.toml"), tmp_path / "arm.toml"
     arm.write_text(to_toml(other_arm(mass=0.5), {}), encoding="utf-8")
     assert f"{arm}: link[1].mass is {default_arm().link[1].mass} here and 0.5 there" in refused(path, arm=arm)
-
-
-def test_motors_friction_and_noise_may_differ_from_the_arm_file(tmp_path: Path) -> None:
-    white = default_arm().model_dump()
-    for joint in white["joint"]:
-        joint["motor"] |= {"inertia": 1e-3, "viscous": 0.0}
-        joint["friction"] |= {"coulomb": 0.0}
-        joint["gear"] = {}
-    for pot in (*white["follower_pots"]["joint"], *white["leader_pots"]["joint"]):
-        pot["noise"] = 0.1
-    arm = tmp_path / "arm.toml"
-    arm.write_text(to_toml(ArmParameters.model_validate(white, strict=False), {}), encoding="utf-8")
-    assert not load_model(write_model(tmp_path / "model.toml"), arm=arm).doubts
 
 
 @pytest.mark.parametrize(

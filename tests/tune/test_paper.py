@@ -10,7 +10,7 @@ from greywhale.motion import multi_steps, steps
 from greywhale.simulate import Experiment, default_controller
 from greywhale.tune import TuningResult, tune
 from greywhale.tune.model import Model, load_model
-from greywhale.tune.paper import AGENTS, BUDGET, ITERATIONS, Loops, move_one_joint, time_since_step
+from greywhale.tune.paper import AGENTS, BUDGET, ITERATIONS, Loops, move_one_joint
 
 BEFORE = default_controller()
 
@@ -48,14 +48,6 @@ def test_j_is_itae_plus_itau_of_the_joint_that_moves(model: Model) -> None:
     volts = np.abs(trace.duties[0, :, 2]) / 400.0 * 15.0
     by_hand = 1e-3 * (k * (error + volts)).sum()
     assert loops.costs(BEFORE[None])[0, 2] == pytest.approx(by_hand, rel=5e-3)
-
-
-def test_time_counts_from_the_step() -> None:
-    weight = time_since_step(steps(), 0.1)
-    assert len(weight) == 5100
-    assert (weight[:1101] == 0.0).all()
-    assert weight[1102] == pytest.approx(0.002)
-    assert weight[-1] == pytest.approx(3.999)
 
 
 def test_joints_are_tuned_on_their_own(model: Model) -> None:
