@@ -14,6 +14,7 @@ from greywhale.files.trajectory import Trajectory
 from greywhale.protocol import schema
 from greywhale.protocol.schema import Fault, State
 from tests.board.fake_board import FakeBoard, Faults, open_device, served
+from tests.support.interrupts import ctrl_c_at
 
 
 def parts(folder: Path) -> list[Path]:
@@ -167,14 +168,9 @@ def test_samples_that_stop_coming_are_named(tmp_path: Path) -> None:
 
 
 def test_ctrl_c_stops_the_motors_and_the_log_says_so(out: Path) -> None:
-
-    def interrupt(what: str, fraction: float) -> None:
-        if what == "recording" and fraction > 0.02:
-            raise KeyboardInterrupt
-
     with FakeBoard() as board:
         with pytest.raises(KeyboardInterrupt), open_device(board) as device:
-            record(device, out, 10.0, enable=True, progress=interrupt)
+            record(device, out, 10.0, enable=True, progress=ctrl_c_at("recording", 0.02))
         assert board.state is State.DISABLED
     assert (read_log(out).complete, read_log(out).ended_by) == (False, "Ctrl-C, or a signal to end.")
 

@@ -26,6 +26,7 @@ from greywhale.protocol.table import ParameterTable
 from greywhale.simulate.controllers import controllers_of
 from greywhale.tune.model import Model, load_model
 from tests.commission.simulated import SimulatedRig, options_in
+from tests.support.interrupts import ctrl_c_at
 from tests.support.tuning import judge_nothing, shorten
 from tests.tune.models import write_model
 
@@ -152,14 +153,9 @@ def test_an_interrupted_tuning_goes_on(rig: SimulatedRig, options: Make, monkeyp
     monkeypatch.setattr(learn, "find_controllers", find_controllers)
     monkeypatch.setattr(learn, "read_model", read)
     whole = commission(options(out=options().out.parent / "whole", trials=1, budget=5))
-
-    def report(what: str, fraction: float, note: str = "") -> None:
-        if "tuning" in what and fraction > 0.4:
-            raise KeyboardInterrupt
-
     with pytest.raises(KeyboardInterrupt):
         rig.before = rig.stored = whole.trials.table
-        commission(options(trials=1, budget=5), report)
+        commission(options(trials=1, budget=5), ctrl_c_at("tuning", 0.4))
     assert rig.stored == whole.trials.table
     journal = options().out / "controller-1.toml.journal"
     assert journal.exists()
@@ -244,10 +240,3 @@ def test_of_an_arm_with_two_joints_those_are_tried_and_the_others_keep_what_they
     told = facts(outcome)
     assert told["joints"] == ["0 base yaw", "1 shoulder pitch"]
     assert len(told["before"]["rows"][0]["cells"]) == 2
-
-
-def test_an_arm_file_of_other_joints_is_refused(tmp_path: Path, rig: SimulatedRig, options: Make) -> None:
-    (tmp_path / "arm.toml").write_text(arm_toml(load_arm("two_joints"), "Two joints."), encoding="utf-8")
-    with pytest.raises(UserError, match="joints 0 and 1, .* all four joints"):
-        commission(options(model=None, arm_file=str(tmp_path / "arm.toml")))
-    assert rig.played == []

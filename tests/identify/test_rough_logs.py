@@ -18,6 +18,7 @@ from greywhale.identify.data import LONGEST_GAP_S, prepare, windows_of
 from greywhale.motion import human_reaches, multi_steps
 from greywhale.protocol.table import ParameterTable
 from tests.identify.conftest import alone, rows, without
+from tests.support.interrupts import ctrl_c_at
 from tools.support.recordings import Recorded, record
 
 WEAK_V = 5.0
@@ -78,13 +79,7 @@ def test_a_long_gap_ends_a_stretch_and_no_window_crosses_it(recorded: Recorded) 
 def test_ctrl_c_at_any_moment_keeps_the_best_model_so_far(
     shoulder: Recorded, white_box: ArmParameters, tables: list[ParameterTable], tmp_path: Path, moment: str
 ) -> None:
-    def interrupt(what: str, fraction: float) -> None:
-        if what.startswith(moment):
-            raise KeyboardInterrupt
-
-    outcome: IdentificationResult = identify(
-        [rows(shoulder.fit, slice(5000))], white_box, tables=tables, report=interrupt
-    )
+    outcome = identify([rows(shoulder.fit, slice(5000))], white_box, tables=tables, report=ctrl_c_at(moment))
     assert not outcome.complete
     assert outcome.text().startswith("UNFINISHED")
     outcome.save(tmp_path / "model.toml")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -20,6 +19,7 @@ from greywhale.protocol.table import ParameterTable
 from greywhale.simulate import plant_row
 from greywhale.tune.model import load_model
 from tests.identify.conftest import alone, first, rows
+from tests.support.interrupts import ctrl_c_at
 from tools.support.recordings import Recorded, record
 
 
@@ -136,19 +136,9 @@ def test_without_its_controller_a_log_is_still_worth_something(shoulder: Recorde
     assert any("controller is not known" in warning for warning in outcome.warnings)
 
 
-def interrupt_at(stage: str) -> Callable[[str, float], None]:
-    """Progress whose reader presses Ctrl-C when this stage begins."""
-
-    def report(what: str, fraction: float) -> None:
-        if what == stage:
-            raise KeyboardInterrupt
-
-    return report
-
-
 def test_interrupt_before_any_model_is_an_interrupt(recorded: Recorded, white_box: ArmParameters) -> None:
     with pytest.raises(KeyboardInterrupt):
-        identify([recorded.fit], white_box, report=interrupt_at("fitting the motors"))
+        identify([recorded.fit], white_box, report=ctrl_c_at("fitting the motors"))
 
 
 def test_model_that_learnt_its_controller_is_warned_about() -> None:

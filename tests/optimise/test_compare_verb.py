@@ -9,14 +9,13 @@ import select
 import signal
 import subprocess
 import sys
-from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 import pytest
 
 from greywhale.cli import compare as verb
 from greywhale.cli import entry
+from tests.support.interrupts import ctrl_c_at
 
 Captured = pytest.CaptureFixture[str]
 QUICK = ("compare", "--functions", "sphere,ackley", "--methods", "gwo, de", "--dimensions", "3", "--seeds", "3")
@@ -105,20 +104,6 @@ def test_interrupt_ends_all_processes_and_writes_nothing(tmp_path: Path, started
     assert list(tmp_path.iterdir()) == []
 
 
-def interrupt_after(patch: pytest.MonkeyPatch, share: float) -> None:
-    """Ctrl-C as the progress bar is told that so much is done."""
-
-    @contextlib.contextmanager
-    def impatient() -> Iterator[Any]:
-        def report(what: str, fraction: float, note: str = "") -> None:
-            if fraction >= share:
-                raise KeyboardInterrupt
-
-        yield report
-
-    patch.setattr(verb, "progress", impatient)
-
-
 def test_an_interrupted_comparison_goes_on_from_its_results_file(
     tmp_path: Path, capsys: Captured, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -126,7 +111,7 @@ def test_an_interrupted_comparison_goes_on_from_its_results_file(
     results = tmp_path / "gwo.study"
     kept = (*QUICK, *BUDGET, "--workers", "1", "--json", "--results", str(results))
     with monkeypatch.context() as patch:
-        interrupt_after(patch, 0.5)
+        patch.setattr(verb, "progress", lambda: contextlib.nullcontext(ctrl_c_at("", beyond=0.49)))
         assert entry.run([*kept]) == 130
     said = capsys.readouterr()
     told = json.loads(said.out)["error"]

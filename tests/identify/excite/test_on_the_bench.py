@@ -11,12 +11,11 @@ import numpy as np
 import pytest
 
 from greywhale.board.device import Device
-from greywhale.board.lead import Plan
 from greywhale.board.record import record_led
 from greywhale.cli.entry import run
 from greywhale.cli.story import RunningBench
 from greywhale.files.arm import default_arm, load_arm
-from greywhale.files.leader import load_leader, save_leader
+from greywhale.files.leader import load_leader
 from greywhale.files.log import read_log
 from greywhale.files.model import to_toml
 from greywhale.identify import identify
@@ -24,6 +23,7 @@ from greywhale.motion import human_reaches
 from greywhale.protocol.firmware import JOINTS, STEP_LSB
 from greywhale.protocol.schema import State
 from greywhale_sim.words import lock_step
+from tests.support.interrupts import ctrl_c_at
 
 
 @pytest.fixture
@@ -43,11 +43,6 @@ def test_an_excited_log_identifies_the_arm(
     bench: RunningBench, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """Motors and their friction already; what a search adds to them, such as backlash, takes ten times as long."""
-
-    def interrupt(what: str, fraction: float) -> None:
-        if what == "choosing the model's order":
-            raise KeyboardInterrupt
-
     out, motion = str(tmp_path / "log.csv"), str(tmp_path / "motion.csv")
     arguments = ("--seconds", "8", "--budget", "10", "--range", "0:-0.8:0.9", "--save-motion", motion)
     answer = told(capsys, "record", "--excite", "-p", bench.port, "-o", out, *arguments)
@@ -65,7 +60,7 @@ def test_an_excited_log_identifies_the_arm(
     assert log.leader[:, 0].max() <= 0.9 + STEP_LSB
     assert np.abs(log.leader - log.follower).max() < 0.45
 
-    outcome = identify([log], load_arm("white_box"), report=interrupt)
+    outcome = identify([log], load_arm("white_box"), report=ctrl_c_at("choosing the model's order"))
     assert outcome.found.order == "Coulomb friction"
     found = {one.name: one.value for one in outcome.estimates}
     arm = default_arm()
@@ -76,25 +71,6 @@ def test_an_excited_log_identifies_the_arm(
             assert value == pytest.approx(true / motor.torque_per_volt, rel=0.25), f"joint {joint}: {kind}"
     for joint in (1, 2):
         assert found[f"joint{joint}.alpha"] == pytest.approx(1.0 / arm.actuator(joint).torque_per_volt, rel=0.05)
-
-
-@pytest.mark.slow
-def test_a_replayed_motion_is_the_motion_wherever_the_arm_starts(
-    bench: RunningBench, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    motion = human_reaches(5, 4.0)
-    save_leader(tmp_path / "motion.csv", motion)
-    arguments = ("-p", bench.port, "-o", str(tmp_path / "log.csv"))
-    answer = told(capsys, "replay", str(tmp_path / "motion.csv"), *arguments)
-    assert answer["dropped"] == 0
-    log = read_log(tmp_path / "log.csv")
-    start, limits = log.leader[0], np.array([[-2.5] * JOINTS, [2.5] * JOINTS])
-    plan = Plan.of(motion, start, limits)
-    later = (np.arange(len(plan.angles)) * 0.016)[None, :] + np.arange(0.0, 0.6, 2e-3)[:, None]
-    for joint in range(JOINTS):
-        shown = np.interp(later, log.time, log.leader[:, joint])
-        assert np.abs(shown - plan.angles[:, joint]).max(axis=1).min() < 0.01
-    assert np.abs(np.diff(log.leader, axis=0)).max() < 8.0 * 1e-3
 
 
 @pytest.mark.slow
