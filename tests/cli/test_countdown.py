@@ -15,6 +15,7 @@ from greywhale.cli import countdown, entry
 from greywhale.protocol import schema
 from greywhale.protocol.ports import Port
 from tests.board.port_board import PortBoard
+from tests.cli.test_signals_and_pipes import RUN
 
 
 def on_a_terminal(monkeypatch: pytest.MonkeyPatch, answer: bool) -> None:
@@ -60,22 +61,13 @@ def test_every_verb_that_moves_the_arm_asks(
     assert "say --yes" in capsys.readouterr().err
 
 
-REPLAY = """
-import sys
-from greywhale.board import device
-from greywhale.cli import entry
-device.Device.__init__.__defaults__ = (0.0, 0.5)
-sys.exit(entry.run(sys.argv[1:]))
-"""
-
-
 @pytest.mark.timeout(60)
 def test_ctrl_c_in_the_countdown_keeps_the_arm_still(tmp_path: Path) -> None:
     motion, log = tmp_path / "motion.csv", tmp_path / "log.csv"
     motion.write_text("time_s,leader_0,leader_1,leader_2,leader_3\n0,0,0,0,0\n1,0,0,0,0\n")
     terminal, theirs = os.openpty()
     with PortBoard() as board:
-        command = [sys.executable, "-c", REPLAY, "replay", str(motion), "-o", str(log), "--port", board.port]
+        command = [sys.executable, "-c", RUN, "replay", str(motion), "-o", str(log), "--port", board.port]
         with subprocess.Popen(command, stderr=theirs) as host:
             os.close(theirs)
             text = b""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -14,11 +13,8 @@ from numpy.typing import NDArray
 from greywhale.fuzzy import twin
 from greywhale.fuzzy.settings import SET_UNIT, JointSettings
 from greywhale.protocol.schema import Refusal
+from tests.fuzzy.conftest import Case, Points
 from tools.support.fuzzy_on_board import FuzzyOnBoard
-
-Case = tuple[JointSettings, int]
-Points = Callable[[JointSettings, int, int], tuple[NDArray[np.int64], NDArray[np.int64]]]
-
 
 LARGEST = 32767
 

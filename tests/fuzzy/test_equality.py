@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -12,9 +10,7 @@ from numpy.typing import NDArray
 
 from greywhale.fuzzy import twin
 from greywhale.fuzzy.settings import JointSettings
-
-Case = tuple[JointSettings, int]
-Points = Callable[[JointSettings, int, int], tuple[NDArray[np.int64], NDArray[np.int64]]]
+from tests.fuzzy.conftest import Case, Points
 
 COLUMNS = {
     "e_zero": "e_zero",

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import replace
 from fractions import Fraction
 
@@ -15,9 +14,7 @@ from numpy.typing import NDArray
 
 from greywhale.fuzzy import exact, twin
 from greywhale.fuzzy.settings import LARGEST_K, SET_UNIT, JointSettings
-
-Case = tuple[JointSettings, int]
-Points = Callable[[JointSettings, int, int], tuple[NDArray[np.int64], NDArray[np.int64]]]
+from tests.fuzzy.conftest import Case, Points
 
 Q15 = 1 << 15
 ANGLE = 4096

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 from fractions import Fraction
 
@@ -10,15 +9,12 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from numpy.typing import NDArray
 
 from greywhale import _native
 from greywhale.fuzzy import exact, twin
 from greywhale.fuzzy.settings import GAIN_UNIT, JointSettings
 from greywhale.protocol.schema import Refusal
-
-Case = tuple[JointSettings, int]
-Points = Callable[[JointSettings, int, int], tuple[NDArray[np.int64], NDArray[np.int64]]]
+from tests.fuzzy.conftest import Case, Points
 
 Q15 = 1 << 15
 PLAIN = JointSettings(-4915, -4915, 4915, 4915, -1638, -1638, 1638, 1638, 33620, 10486, 20513, 15000)
@@ -186,16 +182,12 @@ def test_host_and_firmware_refuse_the_same(data: st.DataObject) -> None:
         ({"kp": 64 * GAIN_UNIT + 1}, Refusal.GAIN),
         ({"ki": 1 << 27}, Refusal.GAIN),
         ({"ku_mv": 30_001}, Refusal.GAIN),
+        ({"period_ms": 0}, Refusal.PERIOD),
+        ({"period_ms": 51}, Refusal.PERIOD),
     ],
 )
 def test_reasons(change: dict[str, int], refusal: Refusal) -> None:
-    assert replace(PLAIN, **change).refusal(20) is refusal
+    period = change.pop("period_ms", 20)
+    assert replace(PLAIN, **change).refusal(period) is refusal
     with pytest.raises(ValueError, match="refused"):
-        replace(PLAIN, **change).controller(20)
-
-
-@pytest.mark.parametrize("period", [0, 51])
-def test_a_period_out_of_range_is_refused(period: int) -> None:
-    assert PLAIN.refusal(period) is Refusal.PERIOD
-    with pytest.raises(ValueError, match="refused"):
-        PLAIN.controller(period)
+        replace(PLAIN, **change).controller(period)

@@ -34,22 +34,13 @@ class Version1:
         board.uart_send(b"0 ")
         assert self.line.read(2) == b"\x14\x10"
 
-    def command(self, body: bytes, answer_bytes: int = 0) -> bytes:
+    def command(self, body: bytes) -> None:
         self.line.board.uart_send(body + b" ")
-        answer = self.line.read(answer_bytes + 2)
-        assert (answer[0], answer[-1]) == (0x14, 0x10)
-        return answer[1:-1]
-
-    def signature(self) -> bytes:
-        return self.command(b"u", 3)
+        assert self.line.read(2) == b"\x14\x10"
 
     def write_page(self, address: int, page: bytes) -> None:
         self.command(b"U" + (address // 2).to_bytes(2, "little"))
         self.command(b"d" + len(page).to_bytes(2, "big") + b"F" + page)
-
-    def read_page(self, address: int, count: int) -> bytes:
-        self.command(b"U" + (address // 2).to_bytes(2, "little"))
-        return self.command(b"t" + count.to_bytes(2, "big") + b"F", count)
 
     def leave(self) -> None:
         self.command(b"Q")
@@ -83,19 +74,9 @@ class Version2:
             total ^= byte
         return total
 
-    def signature(self) -> bytes:
-        return bytes(self.command(bytes([0x1D, 4, 4, 0, 0x30, 0, index, 0]))[5] for index in range(3))
-
-    def seek(self, address: int) -> None:
-        self.command(b"\x06" + (address // 2 | 0x80000000).to_bytes(4, "big"))
-
     def write_page(self, address: int, page: bytes) -> None:
-        self.seek(address)
+        self.command(b"\x06" + (address // 2 | 0x80000000).to_bytes(4, "big"))
         self.command(b"\x13" + len(page).to_bytes(2, "big") + bytes([0xC1, 10, 0x40, 0x4C, 0x20, 0, 0]) + page)
-
-    def read_page(self, address: int, count: int) -> bytes:
-        self.seek(address)
-        return self.command(b"\x14" + count.to_bytes(2, "big") + b"\x20")[2:-1]
 
     def leave(self) -> None:
         self.command(b"\x11\x01\x01")
