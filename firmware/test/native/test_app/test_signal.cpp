@@ -12,6 +12,20 @@ void tick(app::Sampling& sampling, const std::uint16_t* sums, supervisor::Observ
 
 }  // namespace
 
+TEST_CASE("the first sample of a set is taken whole, and those after it through the filter") {
+  params::Table table = bench::defaults();
+  table.filter_shift = 4;
+  table.leader[0] = {8184, 8192};  // count14, from 8184 on
+  app::Sampling sampling;
+  supervisor::Observation seen = {};
+  sampling.configure(table);
+  const std::uint16_t at_rest[8] = {1000}, moved[8] = {2000};
+  tick(sampling, at_rest, seen);
+  CHECK(sampling.leader(0) == 4000 - 8184);
+  tick(sampling, moved, seen);
+  CHECK(sampling.leader(0) == 4000 + 4000 / 16 - 8184);
+}
+
 TEST_CASE("an error is that from the follower to the leader within its joint's limits, and a distance is its size") {
   params::Table table = bench::defaults();
   table.filter_shift = 0;
