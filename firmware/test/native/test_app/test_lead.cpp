@@ -133,17 +133,6 @@ TEST_CASE("a point is taken once, in its turn, and while there is room") {
   CHECK(arm.send(number(12), 0).next == number(13));
 }
 
-TEST_CASE("numbers of points go on past 255") {
-  Led arm;
-  arm.boot();
-  const std::uint8_t first = arm.lead().next;
-  for (int i = 0; i < 600; ++i) {
-    const auto number = static_cast<std::uint8_t>(first + i);
-    REQUIRE(arm.send(number, 0).next == static_cast<std::uint8_t>(number + 1));
-    arm.run(piece);
-  }
-}
-
 TEST_CASE("a point beyond a limit is refused, names the joint and changes nothing") {
   params::Table table = bench::defaults();
   table.joint[3].limit_max = 300;

@@ -147,23 +147,6 @@ TEST_CASE("a late tick stops the arm at once and is counted") {
   CHECK(arm.status().late_ticks == 2);
 }
 
-TEST_CASE("controllers run every period_ms ticks and hold in between") {
-  params::Table table = bench::unwatched();
-  table.period_ms = 10;
-  Bench arm(table);
-  arm.set_leader(0, 0.7);
-  arm.run(30);
-  REQUIRE(arm.enable() == wire::State::soft_start);
-  int changes = 0, before = board.duty[0];
-  for (int i = 0; i < 500; ++i) {
-    arm.tick();
-    if (board.duty[0] != before) ++changes;
-    before = board.duty[0];
-  }
-  CHECK(changes >= 45);
-  CHECK(changes <= 50);
-}
-
 TEST_CASE("the LED tells the states apart, a 32nd of a second later at most") {
   const auto share = [](Bench& arm) {
     int on = 0;

@@ -97,26 +97,6 @@ TEST_CASE("apply is refused for another CRC, for contradictions and for a set th
   CHECK(arm.enable() == wire::State::soft_start);
 }
 
-TEST_CASE("a refused set leaves the controllers of the joints before it as they were") {
-  const auto duties = [](bool refuse_first) {
-    Bench arm;
-    for (std::uint8_t i = 0; i < 4; ++i) arm.set_leader(i, 0.4);
-    arm.boot();
-    if (refuse_first) {
-      params::Table table = bench::defaults();
-      for (auto& joint : table.joint) joint.kp = 300000;
-      table.joint[2].limit_max = 100;
-      table.joint[3].ze_a = 0;
-      REQUIRE(arm.apply(table).type == 0xff);
-    }
-    const auto before = arm.ticks;
-    arm.enable();
-    arm.run(1500 - (arm.ticks - before));
-    return board.duty;
-  };
-  CHECK(duties(true) == duties(false));
-}
-
 TEST_CASE("an enable on the heels of an apply is judged by the new calibration") {
   Booted arm;
   params::Table table = bench::defaults();
