@@ -12,7 +12,7 @@ import numpy as np
 
 from greywhale.arm.parameters import JOINT_NAMES
 from greywhale.arm.urdf import Body, TurningJoint
-from greywhale.base.errors import BAD_USAGE, UserError, cut
+from greywhale.base.errors import BadUsage, cut
 from greywhale.base.types import Floats
 
 UP = np.array([0.0, 0.0, 1.0])
@@ -25,10 +25,9 @@ def complete(path: Path, joints: list[TurningJoint]) -> list[TurningJoint]:
     if len(joints) == len(JOINT_NAMES):
         return joints
     if not 1 <= len(joints) < len(JOINT_NAMES):
-        raise UserError(
+        raise BadUsage(
             f"{path}: it has {len(joints)} turning joints, but greywhale's arm has one to four: "
-            f"{', '.join(JOINT_NAMES)}, from the base on.",
-            BAD_USAGE,
+            f"{', '.join(JOINT_NAMES)}, from the base on."
         )
     found = list(joints)
     if len(found) == 1:
@@ -45,10 +44,9 @@ def complete(path: Path, joints: list[TurningJoint]) -> list[TurningJoint]:
     reach = reach - (reach @ pitch) * pitch
     length = float(np.linalg.norm(reach))
     if length < SHORTEST_M:
-        raise UserError(
+        raise BadUsage(
             f"{path}: the centre of mass of link {cut(last.body.names[0])} lies on the axis of joint {cut(last.name)}, "
-            "so nobody can say where that link points; describe it as a joint with a link.",
-            BAD_USAGE,
+            "so nobody can say where that link points; describe it as a joint with a link."
         )
     along = reach / length
     end = start + 2.0 * length * along

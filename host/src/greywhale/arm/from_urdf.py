@@ -15,7 +15,7 @@ import numpy as np
 from greywhale.arm.fewer_joints import complete
 from greywhale.arm.parameters import JOINT_NAMES, ArmParameters
 from greywhale.arm.urdf import Body, TurningJoint, read_chain
-from greywhale.base.errors import BAD_USAGE, UserError, cut
+from greywhale.base.errors import BadUsage, UserError, cut
 from greywhale.base.formats import toml_file
 from greywhale.base.types import Floats
 
@@ -79,7 +79,7 @@ def import_urdf(path: Path, supply_v: float) -> Imported:
     try:
         arm = toml_file.check(data, ArmParameters, str(path))
     except UserError as error:
-        raise UserError(error.message, BAD_USAGE) from None
+        raise BadUsage(error.message) from None
     return Imported(arm, signs, offsets, tuple(remarks))
 
 
@@ -88,7 +88,7 @@ def _find_frames(path: Path, joints: list[TurningJoint]) -> _Frames:
 
     def bad(joint: TurningJoint, what: str) -> UserError:
         place = JOINT_NAMES[joints.index(joint)]
-        return UserError(f"{path}: joint {cut(joint.name)}, the {place}, {what}.", BAD_USAGE)
+        return BadUsage(f"{path}: joint {cut(joint.name)}, the {place}, {what}.")
 
     if abs(yaw.axis @ UP) < PARALLEL:
         raise bad(yaw, "does not turn about the vertical")
@@ -167,16 +167,14 @@ def _link(path: Path, number: int, joint: TurningJoint, frames: _Frames, remarks
     length = frames.lengths[number] if number < 3 else max(2.0 * reach, SHORTEST_M)
     aside = float(np.linalg.norm(centre[1:]))
     if aside > max(ASIDE_SHARE * length, ASIDE_M):
-        raise UserError(
+        raise BadUsage(
             f"{path}: the centre of mass of link {cut(body.names[0])} is {1e3 * aside:.0f} mm beside the line of the "
-            "link, which this arm cannot have.",
-            BAD_USAGE,
+            "link, which this arm cannot have."
         )
     if not -ROUNDING_M <= reach <= length + ROUNDING_M:
-        raise UserError(
+        raise BadUsage(
             f"{path}: the centre of mass of link {cut(body.names[0])} is {1e3 * reach:.0f} mm along a link of "
-            f"{1e3 * length:.0f} mm; it must lie between the link's joints.",
-            BAD_USAGE,
+            f"{1e3 * length:.0f} mm; it must lie between the link's joints."
         )
     if aside > 1e-6:
         remarks.append(f"the centre of mass of {cut(body.names[0])} was moved by {1e3 * aside:.1f} mm onto the link")
@@ -188,7 +186,7 @@ def _link(path: Path, number: int, joint: TurningJoint, frames: _Frames, remarks
 
 
 def _empty(path: Path, body: Body, what: str) -> UserError:
-    return UserError(f"{path}: link {cut(body.names[0])} has no {what}; every moving link needs some.", BAD_USAGE)
+    return BadUsage(f"{path}: link {cut(body.names[0])} has no {what}; every moving link needs some.")
 
 
 def _axes(number: int, along: Floats, pitch: Floats) -> Floats:
@@ -208,10 +206,9 @@ def _joint(
 ) -> dict[str, Any]:
     """Motor and friction at the joint itself (gear ratio 1): half the damping is the motor's, half its own."""
     if not (joint.effort > 0.0 and joint.velocity > 0.0):
-        raise UserError(
+        raise BadUsage(
             f"joint {cut(joint.name)} has no effort or velocity limit above 0, from which its motor would follow; add "
-            'them: <limit effort="N m" velocity="rad/s" .../>.',
-            BAD_USAGE,
+            'them: <limit effort="N m" velocity="rad/s" .../>.'
         )
     torque_per_volt = joint.effort / supply_v
     damping = joint.effort / joint.velocity

@@ -9,7 +9,7 @@ from xml.etree import ElementTree as xml
 
 import numpy as np
 
-from greywhale.base.errors import BAD_USAGE, UserError, cut, os_reason
+from greywhale.base.errors import BadUsage, UserError, cut, os_reason
 from greywhale.base.types import Floats
 
 LARGEST = 4 << 20  # bytes
@@ -65,15 +65,15 @@ def read_chain(path: Path) -> tuple[str, list[TurningJoint]]:
         with path.open("rb") as file:
             content = file.read(LARGEST + 1)
     except OSError as error:
-        raise UserError(f"{path}: cannot be read: {os_reason(error)}.", BAD_USAGE) from None
+        raise BadUsage(f"{path}: cannot be read: {os_reason(error)}.") from None
     if len(content) > LARGEST or b"<!ENTITY" in content or b"<!DOCTYPE" in content:
-        raise UserError(f"{path}: it is larger than 4 MiB, or declares entities; a URDF needs neither.", BAD_USAGE)
+        raise BadUsage(f"{path}: it is larger than 4 MiB, or declares entities; a URDF needs neither.")
     try:
         robot = xml.fromstring(content)
     except (xml.ParseError, ValueError, LookupError) as error:
-        raise UserError(f"{path}: this is no XML: {error}; give a URDF (run xacro first).", BAD_USAGE) from None
+        raise BadUsage(f"{path}: this is no XML: {error}; give a URDF (run xacro first).") from None
     if robot.tag != "robot":
-        raise UserError(f"{path}: it begins with <{cut(robot.tag)}>, not with <robot>; give a URDF.", BAD_USAGE)
+        raise BadUsage(f"{path}: it begins with <{cut(robot.tag)}>, not with <robot>; give a URDF.")
     return robot.get("name", path.stem), _Reader(path, robot).joints()
 
 
@@ -213,7 +213,7 @@ class _Reader:
         return name
 
     def _bad(self, what: str) -> UserError:
-        return UserError(f"{self.path}: {what}; {_ELSEWHERE}.", BAD_USAGE)
+        return BadUsage(f"{self.path}: {what}; {_ELSEWHERE}.")
 
 
 def _turn(axis: int, angle: float) -> Floats:

@@ -31,12 +31,19 @@ class UserError(Exception):
         self.exit_code = exit_code
 
 
+class BadUsage(UserError):
+    """What was asked for is wrong, and nothing was done."""
+
+    def __init__(self, message: str) -> None:
+        super().__init__(message, BAD_USAGE)
+
+
 def require_within(what: str, value: int, least: int, most: int) -> None:
     """Refuse a whole number that is out of its range, as bad usage."""
     if value < least:
-        raise UserError(f"{what} is {value}, but it must be at least {least}.", BAD_USAGE)
+        raise BadUsage(f"{what} is {value}, but it must be at least {least}.")
     if value > most:
-        raise UserError(f"{what} is {value}, but it must be at most {most}.", BAD_USAGE)
+        raise BadUsage(f"{what} is {value}, but it must be at most {most}.")
 
 
 def counted(number: int, thing: str) -> str:

@@ -15,7 +15,7 @@ from typing import Annotated, NotRequired, TypedDict
 
 import numpy as np
 
-from greywhale.base.errors import BAD_USAGE, UserError
+from greywhale.base.errors import BadUsage, UserError
 from greywhale.base.types import Floats, Progress, show_no_progress
 from greywhale.board.device import Device
 from greywhale.board.lead import Leading, Plan
@@ -166,10 +166,9 @@ def record_led(
 def check_every_led(every: int) -> None:
     """Refuse samples that are too rare to lead by."""
     if not 1 <= every <= _LONGEST_EVERY_LED:
-        raise UserError(
+        raise BadUsage(
             f"one sample every {every} ticks is out of range; while this host leads it must be 1 to "
-            f"{_LONGEST_EVERY_LED}.",
-            BAD_USAGE,
+            f"{_LONGEST_EVERY_LED}."
         )
 
 
@@ -185,13 +184,11 @@ def pose_of(device: Device) -> Floats:
 def check_request(seconds: float, every: int, enable: bool) -> None:
     """Refuse a length, or samples so rare, that no board can record."""
     if not _SHORTEST_S <= seconds <= _LONGEST_S:
-        raise UserError(f"the duration is {seconds:g} s; it must be {_SHORTEST_S:g} to {_LONGEST_S:g} s.", BAD_USAGE)
+        raise BadUsage(f"the duration is {seconds:g} s; it must be {_SHORTEST_S:g} to {_LONGEST_S:g} s.")
     longest = _LONGEST_EVERY_ENABLED if enable else _LONGEST_EVERY
     if not 1 <= every <= longest:
         motors = " while the motors are on" if enable else ""
-        raise UserError(
-            f"one sample every {every} ticks is out of range; it must be 1 to {longest}{motors}.", BAD_USAGE
-        )
+        raise BadUsage(f"one sample every {every} ticks is out of range; it must be 1 to {longest}{motors}.")
 
 
 def origin_of(device: Device, running: ParameterTable, every: int) -> Origin:

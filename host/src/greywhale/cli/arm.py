@@ -10,7 +10,7 @@ import numpy as np
 
 from greywhale.arm.from_urdf import Imported, import_urdf
 from greywhale.arm.parameters import JOINT_NAMES
-from greywhale.base.errors import BAD_USAGE, UserError
+from greywhale.base.errors import BadUsage
 from greywhale.base.formats.whole import refuse_inputs, write_text
 from greywhale.base.types import PerJoint
 from greywhale.cli.arm_match import match
@@ -53,7 +53,7 @@ def import_(urdf: Path, out: Path, supply: float, overwrite: bool, as_json: bool
     they really are.
     """
     if not SUPPLY_V[0] <= supply <= SUPPLY_V[1]:
-        raise UserError(f"--supply is {supply:g} V; it must be {SUPPLY_V[0]:g} to {SUPPLY_V[1]:g}.", BAD_USAGE)
+        raise BadUsage(f"--supply is {supply:g} V; it must be {SUPPLY_V[0]:g} to {SUPPLY_V[1]:g}.")
     refuse_inputs(out, urdf)
     require_new(overwrite, out)
     found = import_urdf(urdf, supply)

@@ -11,7 +11,7 @@ import click
 import numpy as np
 import numpy.typing as npt
 
-from greywhale.base.errors import BAD_USAGE, UserError, cut
+from greywhale.base.errors import BadUsage, UserError, cut
 from greywhale.base.types import Crc, PerJoint
 from greywhale.board.calibrate import Options, Result, calibrate
 from greywhale.board.calibrate.solve import Calibration
@@ -83,7 +83,7 @@ def command(
     alone, and tells the board that the others are not in use.
     """
     if not TRACK_DEG[0] <= track <= TRACK_DEG[1]:
-        raise UserError(f"--track is {track:g} degrees; it must be {TRACK_DEG[0]:g} to {TRACK_DEG[1]:g}.", BAD_USAGE)
+        raise BadUsage(f"--track is {track:g} degrees; it must be {TRACK_DEG[0]:g} to {TRACK_DEG[1]:g}.")
     joints = parse(in_use)
     poses = Options(
         _angles("--first", first),
@@ -127,9 +127,8 @@ def _angles(option: str, text: str) -> npt.NDArray[np.float64]:
     except ValueError:
         degrees = np.empty(0)
     if degrees.shape != (JOINTS,) or not np.all(np.abs(degrees) <= FARTHEST_DEG):
-        raise UserError(
-            f"{option} is {cut(repr(text))}; give four angles in degrees within {FARTHEST_DEG:g}, such as 0,45,-30,20.",
-            BAD_USAGE,
+        raise BadUsage(
+            f"{option} is {cut(repr(text))}; give four angles in degrees within {FARTHEST_DEG:g}, such as 0,45,-30,20."
         )
     angles: npt.NDArray[np.float64] = np.radians(degrees)
     return angles

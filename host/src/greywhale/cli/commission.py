@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from greywhale.base.errors import BAD_USAGE, MOST_SEED, MOST_WORKERS, UserError
+from greywhale.base.errors import MOST_SEED, MOST_WORKERS, BadUsage
 from greywhale.board.session import Session
 from greywhale.cli import completion
 from greywhale.cli.countdown import prepare_motion, yes_option
@@ -74,7 +74,7 @@ def command(
 
     chosen = dict(parse_range(text) for text in ranges)
     if len(chosen) < len(ranges):
-        raise UserError("--range names a joint twice; give each joint once.", BAD_USAGE)
+        raise BadUsage("--range names a joint twice; give each joint once.")
     require_folder(out, "logs, models and controllers", "report.html")
     options = CommissioningRequest(
         port=choose_port(port),

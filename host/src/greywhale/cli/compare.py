@@ -7,7 +7,7 @@ from typing import cast
 
 import click
 
-from greywhale.base.errors import BAD_USAGE, UserError
+from greywhale.base.errors import BadUsage
 from greywhale.base.study import choose_workers
 from greywhale.cli.output import FILE, json_option, option, overwrite_option, progress, show, workers_option
 from greywhale.files.outputs import require_new
@@ -78,7 +78,7 @@ def command(
         check_format(path)
         require_new(overwrite, path)
         if results is not None and path.absolute() == results.absolute():
-            raise UserError(f"{path}: this is the results file; write the report elsewhere.", BAD_USAGE)
+            raise BadUsage(f"{path}: this is the results file; write the report elsewhere.")
     plan = Plan(
         functions=_names(functions, tuple(FUNCTIONS)),
         settings=cast(tuple[Setting, ...], _names(settings, ())),

@@ -12,7 +12,7 @@ from typing import Any, TypeVar
 
 import click
 
-from greywhale.base.errors import BAD_USAGE, UserError
+from greywhale.base.errors import BadUsage
 from greywhale.protocol.ports import is_bench
 
 SECONDS = 3
@@ -30,10 +30,9 @@ def prepare_motion(port: str, yes: bool) -> Callable[[], None]:
     if yes or is_bench(port):
         return lambda: None
     if not sys.stderr.isatty():
-        raise UserError(
+        raise BadUsage(
             "the arm would move by itself, and without a terminal nobody sees the countdown; clear its surroundings "
-            "and say --yes.",
-            BAD_USAGE,
+            "and say --yes."
         )
     return count_down
 

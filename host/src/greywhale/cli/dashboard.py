@@ -17,7 +17,7 @@ import click
 from click.core import ParameterSource
 
 from greywhale.base import bench_process, processes
-from greywhale.base.errors import BAD_USAGE, UserError
+from greywhale.base.errors import BadUsage
 from greywhale.cli import completion
 from greywhale.cli.bench import need_bench
 from greywhale.cli.output import FILE, json_of, json_option, option, port_option, tell
@@ -66,7 +66,7 @@ def command(
     drives is closed or hangs. Ctrl-C ends the dashboard, motors off.
     """
     if sim and context.get_parameter_source("port") is ParameterSource.COMMANDLINE:
-        raise UserError("--sim brings a board of its own; leave --port out, or --sim.", BAD_USAGE)
+        raise BadUsage("--sim brings a board of its own; leave --port out, or --sim.")
     if arm is not None:
         load_arm(arm)
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from greywhale.base.errors import BAD_USAGE, UserError, counted
+from greywhale.base.errors import BadUsage, counted
 from greywhale.base.types import show_no_progress
 from greywhale.board.doctor import Finding, Options, Verdict, examine, worst
 from greywhale.board.doctor.examine import LINK_S
@@ -49,11 +49,11 @@ def command(
     The motors stay off. Keep both arms still. The exit code is 1 when something must be mended.
     """
     if not 0.5 <= seconds <= LONGEST_S:
-        raise UserError(f"--seconds is {seconds:g}; it must be 0.5 to {LONGEST_S:g}.", BAD_USAGE)
+        raise BadUsage(f"--seconds is {seconds:g}; it must be 0.5 to {LONGEST_S:g}.")
     if supply is not None and not SUPPLY_V[0] <= supply <= SUPPLY_V[1]:
-        raise UserError(f"--supply is {supply:g} V; it must be {SUPPLY_V[0]:g} to {SUPPLY_V[1]:g}.", BAD_USAGE)
+        raise BadUsage(f"--supply is {supply:g} V; it must be {SUPPLY_V[0]:g} to {SUPPLY_V[1]:g}.")
     if hex_file is not None and not image:
-        raise UserError("--hex belongs to --image; add that, or leave it out.", BAD_USAGE)
+        raise BadUsage("--hex belongs to --image; add that, or leave it out.")
     chosen = choose_port(port)
     with progress(brief=True) as report:
         findings = examine(Options(chosen, params, seconds, supply, image, hex_file), report or show_no_progress)

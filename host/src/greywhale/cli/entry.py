@@ -18,7 +18,7 @@ from typing import Annotated, NoReturn, TypedDict
 import click
 
 from greywhale.base import system
-from greywhale.base.errors import BAD_USAGE, FAILED, LONGEST, UserError, cut, os_reason, printable
+from greywhale.base.errors import BAD_USAGE, FAILED, LONGEST, BadUsage, UserError, cut, os_reason, printable
 from greywhale.cli import tracing
 from greywhale.cli.output import json_of
 from greywhale.cli.verbs import greywhale
@@ -110,7 +110,7 @@ def _refuse_empty(arguments: Sequence[str]) -> None:
         if argument == "" or (argument.startswith("--") and argument.endswith("=")):
             option = argument.rstrip("=") or before
             named = f"the value of {option}" if option.startswith("-") else "an argument"
-            raise UserError(f"{named} is empty; give one, or leave it out.", BAD_USAGE)
+            raise BadUsage(f"{named} is empty; give one, or leave it out.")
 
 
 def _terminated(number: int, frame: FrameType | None) -> None:

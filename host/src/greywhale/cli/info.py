@@ -7,7 +7,7 @@ from typing import Annotated, TypedDict
 
 import click
 
-from greywhale.base.errors import BAD_USAGE, UserError, counted
+from greywhale.base.errors import BadUsage, counted
 from greywhale.base.types import Crc
 from greywhale.board.device import Device
 from greywhale.board.doctor.board import EEPROM_WRITES
@@ -70,11 +70,11 @@ def command(watch: bool, seconds: float | None, port: str | None, as_json: bool)
     """
     if watch:
         if as_json:
-            raise UserError("--watch goes on and on, and --json prints one object; leave one of them out.", BAD_USAGE)
+            raise BadUsage("--watch goes on and on, and --json prints one object; leave one of them out.")
         _watch(port, seconds)
         return
     if seconds is not None:
-        raise UserError("--seconds belongs to --watch; add that, or leave it out.", BAD_USAGE)
+        raise BadUsage("--seconds belongs to --watch; add that, or leave it out.")
     with Device(choose_port(port), restart=False) as device:
         hello, status = device.hello, device.status()
         pots = read_pots(device, read_parameters(device)) if status.state in _MOTORS_OFF else None

@@ -9,7 +9,7 @@ from typing import TypedDict
 
 import click
 
-from greywhale.base.errors import BAD_USAGE, UserError, cut
+from greywhale.base.errors import BadUsage, cut
 from greywhale.base.formats.units import read_number, unit_of
 from greywhale.base.types import Crc
 from greywhale.board.device import Device
@@ -91,7 +91,7 @@ def set_(settings: tuple[str, ...], port: str | None, as_json: bool) -> None:
     changes: dict[str, int] = {}
     for name, raw in map(_setting, settings):
         if name in changes:
-            raise UserError(f"{name} is given twice; give it once.", BAD_USAGE)
+            raise BadUsage(f"{name} is given twice; give it once.")
         changes[name] = raw
     with Device(choose_port(port)) as device, progress(brief=True) as report:
         done = change_parameters(device, changes, report)
@@ -163,20 +163,20 @@ def _parameter(name: str) -> Parameter:
         return schema.PARAMETER_BY_NAME[name]
     except KeyError:
         meant = did_you_mean(name, schema.PARAMETER_BY_NAME)
-        raise UserError(
-            f"there is no parameter {cut(json.dumps(name))}; `greywhale params get` shows all names.{meant}", BAD_USAGE
+        raise BadUsage(
+            f"there is no parameter {cut(json.dumps(name))}; `greywhale params get` shows all names.{meant}"
         ) from None
 
 
 def _setting(text: str) -> tuple[str, int]:
     name, equals, value = text.partition("=")
     if not equals:
-        raise UserError(f"{cut(json.dumps(text))} is not NAME=VALUE, such as joint0.kp=0.5.", BAD_USAGE)
+        raise BadUsage(f"{cut(json.dumps(text))} is not NAME=VALUE, such as joint0.kp=0.5.")
     parameter = _parameter(name.strip())
     try:
         number = read_number(value, unit_of(parameter.unit))
     except ValueError as error:
-        raise UserError(f"{name} is {cut(json.dumps(value))}: {error}.", BAD_USAGE) from None
+        raise BadUsage(f"{name} is {cut(json.dumps(value))}: {error}.") from None
     return parameter.name, parameter.to_raw_as_given(number)
 
 

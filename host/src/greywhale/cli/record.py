@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NotRequired, TypedDict
 
 import click
 
-from greywhale.base.errors import BAD_USAGE, MOST_SEED, UserError, counted
+from greywhale.base.errors import MOST_SEED, BadUsage, counted
 from greywhale.base.formats.whole import refuse_inputs
 from greywhale.board.device import Device
 from greywhale.board.pots import FOLLOWERS, require_good_pots
@@ -136,13 +136,12 @@ def command(
     bench.
     """
     if reconnect and (enable or excite):
-        raise UserError(
+        raise BadUsage(
             "--reconnect is for logs with the motors off: after a lost port they stay off, so a log of their motion "
-            "ends there; leave it out.",
-            BAD_USAGE,
+            "ends there; leave it out."
         )
     if disengaged and not enable:
-        raise UserError("--disengaged is for a leader that the follower follows; add --enable.", BAD_USAGE)
+        raise BadUsage("--disengaged is for a leader that the follower follows; add --enable.")
     if not excite:
         require_new(overwrite, out)
         _refuse_without_excite(arm_file=arm_file, ranges=ranges, save_motion=save_motion, seed=seed, budget=budget)
@@ -157,13 +156,13 @@ def command(
         show(as_json, answer, describe(recorded))
         return
     if enable:
-        raise UserError("--excite turns the motors on by itself; leave --enable out.", BAD_USAGE)
+        raise BadUsage("--excite turns the motors on by itself; leave --enable out.")
     check_every_led(every)
     refuse_inputs(out, arm_file)
     refuse_inputs(save_motion, arm_file)
     require_new(overwrite, out, save_motion)
     if save_motion is not None and save_motion.resolve() == out.resolve():
-        raise UserError(f"{out}: the log and the motion cannot be one file; give --save-motion another.", BAD_USAGE)
+        raise BadUsage(f"{out}: the log and the motion cannot be one file; give --save-motion another.")
     plan = _plan(arm_file, ranges, seconds, seed, budget)
     chosen = choose_port(port)
     warn = prepare_motion(chosen, yes)
@@ -213,7 +212,7 @@ def _plan(
 def _refuse_without_excite(**given: object) -> None:
     for name, value in given.items():
         if value is not None and value != ():
-            raise UserError(f"{_OF_EXCITE[name]} belongs to --excite; add that, or leave it out.", BAD_USAGE)
+            raise BadUsage(f"{_OF_EXCITE[name]} belongs to --excite; add that, or leave it out.")
 
 
 def describe(recording: Recording) -> str:

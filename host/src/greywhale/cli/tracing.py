@@ -16,7 +16,7 @@ from collections.abc import Sequence
 from importlib.metadata import version
 from pathlib import Path
 
-from greywhale.base.errors import BAD_USAGE, UserError, os_reason, printable
+from greywhale.base.errors import BadUsage, os_reason, printable
 
 ROOT = logging.getLogger("greywhale")
 # What a line of the file begins with: local time with its offset.
@@ -94,7 +94,7 @@ def end() -> None:
 def _open(path: Path) -> logging.Handler:
     try:
         if path.is_file() and (head := path.read_bytes()[:64]) and not LINE.match(head):
-            raise UserError(f"{path}: this is no log of --log-file; name another file.", BAD_USAGE)
+            raise BadUsage(f"{path}: this is no log of --log-file; name another file.")
         return _File(path)
     except OSError as error:
-        raise UserError(f"{path}: cannot be written: {os_reason(error)}.", BAD_USAGE) from None
+        raise BadUsage(f"{path}: cannot be written: {os_reason(error)}.") from None

@@ -8,7 +8,7 @@ from typing import NotRequired, TypedDict
 
 import click
 
-from greywhale.base.errors import BAD_USAGE, MOST_WORKERS, UserError, require_within
+from greywhale.base.errors import MOST_WORKERS, BadUsage, require_within
 from greywhale.base.formats.whole import refuse_inputs
 from greywhale.cli import completion
 from greywhale.cli.output import FILE, json_option, option, overwrite_option, progress, show
@@ -169,9 +169,9 @@ def _bounds(given: tuple[str, ...]) -> dict[str, tuple[float, float]]:
         except ValueError:
             dots = ""
         if not equals or not dots:
-            raise UserError(f"--bounds {one}: bounds look like NAME=LOW..HIGH, Ku=3..9 for one.", BAD_USAGE)
+            raise BadUsage(f"--bounds {one}: bounds look like NAME=LOW..HIGH, Ku=3..9 for one.")
         if name in found:
-            raise UserError(f"--bounds {one}: {name} has bounds already; give them once.", BAD_USAGE)
+            raise BadUsage(f"--bounds {one}: {name} has bounds already; give them once.")
         found[name] = limits
     return found
 
@@ -191,4 +191,4 @@ def _check_files(
     require_folder(pictures, "pictures", "sets.png")
     require_no_files(overwrite or resume, pictures, "sets.png", "convergence.png", "responses_*.png")
     if resume and not journal.exists():
-        raise UserError(f"{journal}: no interrupted tuning is there to go on with; leave --resume out.", BAD_USAGE)
+        raise BadUsage(f"{journal}: no interrupted tuning is there to go on with; leave --resume out.")

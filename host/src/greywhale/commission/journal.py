@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from greywhale.base.closing import Closing
-from greywhale.base.errors import BAD_USAGE, UserError
+from greywhale.base.errors import BadUsage
 from greywhale.base.formats.checked_lines import CheckedLines, Kind
 from greywhale.base.formats.whole import make_folder
 
@@ -24,14 +24,10 @@ class CommissioningJournal(Closing):
         self.folder = folder
         path = folder / NAME
         if resume and not path.exists():
-            raise UserError(
-                f"{folder}: no interrupted commissioning is there to go on with; leave --resume out.", BAD_USAGE
-            )
+            raise BadUsage(f"{folder}: no interrupted commissioning is there to go on with; leave --resume out.")
         if not resume and _has_steps(path):
-            raise UserError(
-                f"{folder}: a commissioning is in this folder already; go on with it (--resume), or give another "
-                "--out.",
-                BAD_USAGE,
+            raise BadUsage(
+                f"{folder}: a commissioning is in this folder already; go on with it (--resume), or give another --out."
             )
         make_folder(folder)
         self._lines = CheckedLines(path, KIND, request, keep=resume)

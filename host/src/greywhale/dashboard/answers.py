@@ -8,7 +8,7 @@ from typing import Any, TypedDict
 from greywhale import __version__
 from greywhale.arm.export import JOINT_IDS, urdf
 from greywhale.arm.parameters import ArmParameters
-from greywhale.base.errors import BAD_USAGE, UserError
+from greywhale.base.errors import BadUsage
 from greywhale.base.formats import toml_file
 from greywhale.base.formats.kinds import Kind, kind_of
 from greywhale.dashboard.bench import BenchControls
@@ -113,9 +113,9 @@ class Answers:
         """What the arm would do under a whole parameter table."""
         raw, board, file = asked.get("raw"), asked.get("board"), asked.get("file")
         if not isinstance(raw, list) or len(raw) != len(schema.PARAMETERS) or not all(type(one) is int for one in raw):
-            raise UserError(f"raw must be {len(schema.PARAMETERS)} whole numbers, a board's parameters.", BAD_USAGE)
+            raise BadUsage(f"raw must be {len(schema.PARAMETERS)} whole numbers, a board's parameters.")
         if type(board) is not int or not (file is None or isinstance(file, str)):
-            raise UserError("board must be a number, and file the name of an arm or a model.", BAD_USAGE)
+            raise BadUsage("board must be a number, and file the name of an arm or a model.")
         return predict(self._arm(file), ParameterTable(tuple(raw), schema.Board.of(board)))
 
     def _arm(self, file: str | None) -> ArmParameters:

@@ -8,7 +8,7 @@ import threading
 from typing import Any
 
 from greywhale.base.bench_process import RunningBench
-from greywhale.base.errors import BAD_USAGE, UserError, cut
+from greywhale.base.errors import BadUsage, cut
 from greywhale.dashboard.folder import Folder
 
 
@@ -54,9 +54,7 @@ class BenchControls:
                 self._do(f"speed {_number(rate)}")
             case _:
                 keys = "leader, motion, fault, power, estop, clutch, supply, load and speed"
-                raise UserError(
-                    f"{cut(repr(wish))} is nothing that a page does to a bench; it knows {keys}.", BAD_USAGE
-                )
+                raise BadUsage(f"{cut(repr(wish))} is nothing that a page does to a bench; it knows {keys}.")
         return self.controls()
 
     def _do(self, text: str) -> dict[str, Any]:
@@ -66,5 +64,5 @@ class BenchControls:
 
 def _number(value: object) -> str:
     if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
-        raise UserError(f"{cut(repr(value))} is no number, and the bench needs one here.", BAD_USAGE)
+        raise BadUsage(f"{cut(repr(value))} is no number, and the bench needs one here.")
     return repr(float(value))

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import TypedDict
 
-from greywhale.base.errors import BAD_USAGE, UserError, cut
+from greywhale.base.errors import BadUsage, UserError, cut
 from greywhale.base.formats import toml_file
 from greywhale.base.formats.kinds import kind_of
 from greywhale.files.log.layout import TITLE
@@ -34,10 +34,9 @@ class Folder:
         """The whole path of a name; one that leads out of the folder is refused, also through a link."""
         whole = self.path / name if name and name.isprintable() else None
         if whole is None or not whole.resolve().is_relative_to(self.path):
-            raise UserError(
+            raise BadUsage(
                 f"{cut(name) or 'an empty name'}: it is not in {self.path}; name a file there, or start the dashboard "
-                "with another --folder.",
-                BAD_USAGE,
+                "with another --folder."
             )
         return whole
 

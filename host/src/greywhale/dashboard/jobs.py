@@ -8,7 +8,7 @@ from contextlib import AbstractContextManager, ExitStack
 from typing import Any, TypedDict
 
 from greywhale.base import system
-from greywhale.base.errors import BAD_USAGE, UserError, cut
+from greywhale.base.errors import BadUsage, UserError, cut
 from greywhale.dashboard.folder import Folder
 from greywhale.dashboard.job import Facts, Job
 from greywhale.dashboard.relay import Relay
@@ -67,7 +67,7 @@ class Jobs:
         verb = next((one for one in self.verbs() if one["verb"] == name), None)
         if verb is None or not isinstance(arguments, dict):
             names = ", ".join(one["verb"] for one in self.verbs())
-            raise UserError(f"{cut(repr(name))} is no verb of a page; there are: {names}.", BAD_USAGE)
+            raise BadUsage(f"{cut(repr(name))} is no verb of a page; there are: {names}.")
         if not system.HANDS_DOWN_DESCRIPTORS:
             raise UserError(f"a page starts no verbs on Windows; run `greywhale {name}` in a terminal.")
         words = command_line(verb, arguments, self._folder)
@@ -100,7 +100,7 @@ class Jobs:
         """Answer a verb that asks."""
         job = self._find(id)
         if not isinstance(line, str) or len(line) > 200:
-            raise UserError("line must be a short text.", BAD_USAGE)
+            raise BadUsage("line must be a short text.")
         job.say(line)
         return job.facts
 
@@ -123,7 +123,7 @@ class Jobs:
     def _find(self, id: str) -> Job:
         job = next((one for one in self._jobs if one.facts["id"] == id), None)
         if job is None:
-            raise UserError(f"{cut(repr(id))} is no job of this dashboard.", BAD_USAGE)
+            raise BadUsage(f"{cut(repr(id))} is no job of this dashboard.")
         return job
 
     def _end_of_page(self, page: str) -> None:

@@ -17,7 +17,7 @@ from starlette.staticfiles import StaticFiles
 from starlette.types import ASGIApp
 from starlette.websockets import WebSocket
 
-from greywhale.base.errors import BAD_USAGE, UserError
+from greywhale.base.errors import BadUsage, UserError
 from greywhale.dashboard.answers import Answers
 from greywhale.dashboard.guard import Guard
 from greywhale.dashboard.sockets import serve_board, serve_host
@@ -73,9 +73,7 @@ def listen(port: int = 0) -> socket.socket:
         listener.bind(("127.0.0.1", port))
     except OSError:
         listener.close()
-        raise UserError(
-            f"127.0.0.1:{port} is taken by another program; choose another --http-port.", BAD_USAGE
-        ) from None
+        raise BadUsage(f"127.0.0.1:{port} is taken by another program; choose another --http-port.") from None
     listener.listen()
     return listener
 
@@ -145,5 +143,5 @@ async def _object(request: Request) -> dict[str, Any]:
     except (ValueError, RecursionError):
         told = None
     if not isinstance(told, dict):
-        raise UserError("the body of the request must be a JSON object.", BAD_USAGE)
+        raise BadUsage("the body of the request must be a JSON object.")
     return told

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, Literal, TypedDict
 
-from greywhale.base.errors import BAD_USAGE, UserError, cut
+from greywhale.base.errors import BadUsage, cut
 from greywhale.dashboard.folder import Folder
 
 LONGEST_VALUE = 1000
@@ -38,7 +38,7 @@ def command_line(verb: VerbFacts, given: Mapping[str, Any], folder: Folder) -> l
     known = {one["name"] for one in verb["arguments"]}
     for name in given:
         if name not in known:
-            raise UserError(f"{verb['verb']} has no argument {cut(repr(name))}.", BAD_USAGE)
+            raise BadUsage(f"{verb['verb']} has no argument {cut(repr(name))}.")
     options: list[str] = []
     places: list[str] = []
     for argument in verb["arguments"]:
@@ -57,7 +57,7 @@ def command_line(verb: VerbFacts, given: Mapping[str, Any], folder: Folder) -> l
 
 def _flag(argument: ArgumentFacts, value: object) -> bool:
     if not isinstance(value, bool):
-        raise UserError(f"{argument['name']} is {cut(repr(value))}, but it must be true or false.", BAD_USAGE)
+        raise BadUsage(f"{argument['name']} is {cut(repr(value))}, but it must be true or false.")
     return value
 
 
@@ -65,14 +65,12 @@ def _texts(argument: ArgumentFacts, value: object, folder: Folder) -> Iterator[s
     """The values of an argument. A name is looked at whatever it is called: any text may be a file's."""
     values: Sequence[object] = value if isinstance(value, list) and argument["many"] else [value]
     if len(values) > MOST_VALUES:
-        raise UserError(
-            f"{argument['name']} has {len(values)} values, but at most {MOST_VALUES} may be given.", BAD_USAGE
-        )
+        raise BadUsage(f"{argument['name']} has {len(values)} values, but at most {MOST_VALUES} may be given.")
     for one in values:
         text = str(one)
         fits = isinstance(one, str | int | float) and not isinstance(one, bool)
         if not fits or not text or not text.isprintable() or len(text) > LONGEST_VALUE:
-            raise UserError(f"{argument['name']} is {cut(repr(one))}, but it must be text or a number.", BAD_USAGE)
+            raise BadUsage(f"{argument['name']} is {cut(repr(one))}, but it must be text or a number.")
         if isinstance(one, str):
             folder.inside(text.rpartition("=")[2] or text)
         yield text

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from greywhale.base.errors import BAD_USAGE, UserError, os_reason
+from greywhale.base.errors import BadUsage, os_reason
 from greywhale.base.formats.whole import require_writable
 
 
@@ -13,7 +13,7 @@ def require_new(overwrite: bool, *paths: Path | None) -> None:
     require_files(*paths)
     for path in paths:
         if path is not None and not overwrite and path.exists():
-            raise UserError(f"{path}: exists already; write over it with --overwrite, or name another file.", BAD_USAGE)
+            raise BadUsage(f"{path}: exists already; write over it with --overwrite, or name another file.")
 
 
 def require_no_files(overwrite: bool, folder: Path | None, *patterns: str) -> None:
@@ -21,9 +21,7 @@ def require_no_files(overwrite: bool, folder: Path | None, *patterns: str) -> No
     for pattern in patterns if folder is not None and not overwrite else ():
         assert folder is not None
         for path in sorted(folder.glob(pattern)):
-            raise UserError(
-                f"{path}: exists already; write over it with --overwrite, or name another folder.", BAD_USAGE
-            )
+            raise BadUsage(f"{path}: exists already; write over it with --overwrite, or name another folder.")
 
 
 def require_files(*paths: Path | None) -> None:
@@ -32,15 +30,13 @@ def require_files(*paths: Path | None) -> None:
         if path is None:
             continue
         if str(path) == "-":
-            raise UserError(
-                "-: a result goes into a file, never to standard output; name one (./- is a file named -).", BAD_USAGE
-            )
+            raise BadUsage("-: a result goes into a file, never to standard output; name one (./- is a file named -).")
         if not path.parent.is_dir():
             gone = "is not a folder; name one" if path.parent.exists() else "does not exist; create it"
             there = "" if path.parent.exists() else "the folder "
-            raise UserError(f"{path}: {there}{path.parent} {gone}, or write elsewhere.", BAD_USAGE)
+            raise BadUsage(f"{path}: {there}{path.parent} {gone}, or write elsewhere.")
         if path.is_dir():
-            raise UserError(f"{path}: this is a folder; name a file in it.", BAD_USAGE)
+            raise BadUsage(f"{path}: this is a folder; name a file in it.")
         _require_writable(path)
 
 
@@ -55,18 +51,18 @@ def require_folder(folder: Path | None, what: str, *names: str) -> None:
         require_files(folder / "new", *(folder / name for name in names))
         return
     if folder.exists():
-        raise UserError(f"{folder}: {what} go into a folder, and this is a file.", BAD_USAGE)
+        raise BadUsage(f"{folder}: {what} go into a folder, and this is a file.")
     above = next(one for one in folder.absolute().parents if one.exists())
     if not above.is_dir():
-        raise UserError(f"{folder}: {above} is not a folder; write elsewhere.", BAD_USAGE)
+        raise BadUsage(f"{folder}: {above} is not a folder; write elsewhere.")
     try:
         require_writable(above / "new")
     except OSError as error:
-        raise UserError(f"{folder}: cannot be made: {os_reason(error)}; write elsewhere.", BAD_USAGE) from None
+        raise BadUsage(f"{folder}: cannot be made: {os_reason(error)}; write elsewhere.") from None
 
 
 def _require_writable(path: Path) -> None:
     try:
         require_writable(path)
     except OSError as error:
-        raise UserError(f"{path}: cannot be written: {os_reason(error)}; write elsewhere.", BAD_USAGE) from None
+        raise BadUsage(f"{path}: cannot be written: {os_reason(error)}; write elsewhere.") from None

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from greywhale.base.errors import BAD_USAGE, UserError
+from greywhale.base.errors import BadUsage
 from greywhale.base.types import Floats
 from greywhale.files.log import Log
 from greywhale.identify.data import LIVELY_RAD
@@ -25,17 +25,14 @@ def refuse_shared(fit: Sequence[Log], validate: Sequence[Log]) -> None:
     for place, log in enumerate(fit):
         for other in fit[:place]:
             if shares_samples(other, log):
-                raise UserError(
-                    f"{_both(other, log)}; what is fitted twice counts twice. Give one of them, or record another log.",
-                    BAD_USAGE,
+                raise BadUsage(
+                    f"{_both(other, log)}; what is fitted twice counts twice. Give one of them, or record another log."
                 )
     for log in validate:
         for other in fit:
             if shares_samples(other, log):
-                raise UserError(
-                    f"{_both(other, log)}; a model is validated on a log that it was not fitted to. "
-                    "Record another one.",
-                    BAD_USAGE,
+                raise BadUsage(
+                    f"{_both(other, log)}; a model is validated on a log that it was not fitted to. Record another one."
                 )
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from greywhale.arm import ArmParameters
-from greywhale.base.errors import BAD_USAGE, MOST_SEED, UserError, require_within
+from greywhale.base.errors import MOST_SEED, BadUsage, require_within
 from greywhale.base.types import Progress, show_no_progress
 from greywhale.files.log import Log
 from greywhale.files.log.check import Check
@@ -47,11 +47,11 @@ def identify(
     interrupt (Ctrl-C) after the first model ends the search early, with `complete` False in the outcome.
     """
     if method not in METHODS:
-        raise UserError(f"method is {method!r}, but it must be one of {', '.join(METHODS)}.", BAD_USAGE)
+        raise BadUsage(f"method is {method!r}, but it must be one of {', '.join(METHODS)}.")
     if not logs:
-        raise UserError("identification needs at least one log.", BAD_USAGE)
+        raise BadUsage("identification needs at least one log.")
     if method in PAPER_METHODS and arm.joints_in_use != ALL:
-        raise UserError("the paper's methods are for arms with all four joints; use --method default.", BAD_USAGE)
+        raise BadUsage("the paper's methods are for arms with all four joints; use --method default.")
     require_within("seed", seed, 0, MOST_SEED)
     for log in (*logs, *validate):
         refuse_altered(log, Check.CHANGED)

@@ -11,7 +11,7 @@ import numpy as np
 
 from greywhale.arm import ArmParameters
 from greywhale.arm.plants import PLANT_COLUMNS, check_plants
-from greywhale.base.errors import BAD_USAGE, UserError
+from greywhale.base.errors import BadUsage, UserError
 from greywhale.base.types import Floats
 from greywhale.identify.space import KINDS, Parameter, Space
 from greywhale.simulate import plant_row
@@ -31,7 +31,7 @@ def sampled_plants(arm: ArmParameters, count: int, seed: int = 0) -> Floats:
     them.
     """
     if count < 1:
-        raise UserError(f"count of sampled plants is {count}, but it must be at least 1.", BAD_USAGE)
+        raise BadUsage(f"count of sampled plants is {count}, but it must be at least 1.")
     estimate = plant_row(arm)[None]
     if count == 1:
         return estimate

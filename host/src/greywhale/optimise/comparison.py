@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from greywhale.base.errors import BAD_USAGE, MOST_SEED, UserError, require_within
+from greywhale.base.errors import MOST_SEED, BadUsage, require_within
 from greywhale.base.study import SerialWorkers, Task, Workers, run_study
 from greywhale.base.types import Floats, Progress
 from greywhale.optimise.functions import FUNCTIONS, SETTINGS, Setting, place
@@ -57,7 +57,7 @@ class Plan:
                 box = np.zeros(self.dimensions), np.ones(self.dimensions)
                 create(method, *box, budget=self.budget, pack=self.pack).close()
             except ValueError as error:
-                raise UserError(f"{error}.", BAD_USAGE) from None
+                raise BadUsage(f"{error}.") from None
 
     @property
     def evaluations(self) -> int:
@@ -67,12 +67,12 @@ class Plan:
 
 def _check_names(what: str, chosen: tuple[str, ...], known: tuple[str, ...]) -> None:
     if not chosen:
-        raise UserError(f"no {what} was chosen; there are {', '.join(known)}.", BAD_USAGE)
+        raise BadUsage(f"no {what} was chosen; there are {', '.join(known)}.")
     for name in chosen:
         if name not in known:
-            raise UserError(f"there is no {what} {name!r}; there are {', '.join(known)}.", BAD_USAGE)
+            raise BadUsage(f"there is no {what} {name!r}; there are {', '.join(known)}.")
         if chosen.count(name) > 1:
-            raise UserError(f"{what} {name!r} was chosen twice.", BAD_USAGE)
+            raise BadUsage(f"{what} {name!r} was chosen twice.")
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ import io
 from pathlib import Path
 from typing import TypedDict
 
-from greywhale.base.errors import BAD_USAGE, UserError
+from greywhale.base.errors import BadUsage
 from greywhale.base.formats.whole import write_text
 from greywhale.optimise.comparison import Comparison, Duel
 from greywhale.optimise.functions import Setting
@@ -32,7 +32,7 @@ class ComparisonFacts(TypedDict):
 
 def check_format(path: Path) -> None:
     if path.suffix.lower() not in FORMATS:
-        raise UserError(f"{path}: reports end in {', '.join(FORMATS)}.", BAD_USAGE)
+        raise BadUsage(f"{path}: reports end in {', '.join(FORMATS)}.")
 
 
 def write_report(path: Path, comparison: Comparison) -> None:

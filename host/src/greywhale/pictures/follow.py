@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
-from greywhale.base.errors import BAD_USAGE, UserError
+from greywhale.base.errors import BadUsage
 from greywhale.base.types import Floats
 from greywhale.files.log import Log
 from greywhale.motion import evaluate
@@ -76,7 +76,7 @@ def draw_following(path: str | Path, traces: Sequence[Trace], title: str) -> Non
     target = Path(path)
     kind_of(target)
     if not 1 <= len(traces) <= _MOST_LOGS:
-        raise UserError(f"a picture shows 1 to {_MOST_LOGS} logs, not {len(traces)}.", exit_code=BAD_USAGE)
+        raise BadUsage(f"a picture shows 1 to {_MOST_LOGS} logs, not {len(traces)}.")
     with style():
         save(plot_following(traces, title), target)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from greywhale.base.errors import BAD_USAGE, UserError
+from greywhale.base.errors import BadUsage
 
 # Each kind, and the entry of its metadata that would make two pictures of the same numbers differ.
 CHANGING = {".png": "Software", ".svg": "Date", ".pdf": "CreationDate"}
@@ -15,5 +15,5 @@ def kind_of(path: Path) -> str:
     """The ending of a picture, such as .png; another one is refused."""
     kind = path.suffix.lower()
     if kind not in CHANGING:
-        raise UserError(f"{path}: pictures end in {', '.join(KINDS)}.", exit_code=BAD_USAGE)
+        raise BadUsage(f"{path}: pictures end in {', '.join(KINDS)}.")
     return kind

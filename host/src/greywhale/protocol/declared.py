@@ -13,7 +13,7 @@ from dataclasses import dataclass, fields
 from enum import IntEnum
 from typing import ClassVar, Protocol, Self, TypeVar
 
-from greywhale.base.errors import BAD_USAGE, UserError
+from greywhale.base.errors import BAD_USAGE, BadUsage, UserError
 
 CRC_START = 0xFFFF
 _CODES = {"u8": "B", "i8": "b", "u16": "H", "i16": "h", "u32": "I", "i32": "i"}
@@ -159,7 +159,7 @@ class Parameter:
     def to_raw(self, physical: float) -> int:
         """The nearest raw value; UserError when it is not finite or out of range."""
         if not math.isfinite(physical):
-            raise UserError(f"{self.name} is {physical}, but it must be a finite number; {self._advice()}", BAD_USAGE)
+            raise BadUsage(f"{self.name} is {physical}, but it must be a finite number; {self._advice()}")
         scaled = physical / self.lsb + 0.5
         raw = math.floor(scaled) if math.isfinite(scaled) else _BEYOND
         self._check(raw, physical)
@@ -169,12 +169,11 @@ class Parameter:
         """As to_raw, for a number that a person gave: refused where rounding would change it noticeably."""
         raw = self.to_raw(physical)
         if self.lsb == 1.0 and raw != physical:
-            raise UserError(f"{self.name} is {physical:.6g}{self._unit()}, but it must be a whole number.", BAD_USAGE)
+            raise BadUsage(f"{self.name} is {physical:.6g}{self._unit()}, but it must be a whole number.")
         if raw == 0 and physical != 0.0:
-            raise UserError(
+            raise BadUsage(
                 f"{self.name} is {physical:.6g}{self._unit()}, which the board would store as 0; "
-                f"choose 0, or a size from {self.lsb:.6g}{self._unit()}.",
-                BAD_USAGE,
+                f"choose 0, or a size from {self.lsb:.6g}{self._unit()}."
             )
         return raw
 
@@ -184,9 +183,7 @@ class Parameter:
 
     def _check(self, raw: int, physical: float) -> None:
         if not self.minimum <= raw <= self.maximum or (self.nonzero and raw == 0):
-            raise UserError(
-                f"{self.name} is {physical:.6g}{self._unit()}, which is out of range; {self._advice()}", BAD_USAGE
-            )
+            raise BadUsage(f"{self.name} is {physical:.6g}{self._unit()}, which is out of range; {self._advice()}")
 
     def _unit(self) -> str:
         return f" {self.unit}" if self.unit else ""
@@ -233,10 +230,9 @@ class Table:
             other = self.parameters[self._index[f"{parameter.group}{parameter.element}.{parameter.below}"]]
             if raw[parameter.index] >= raw[other.index]:
                 low, high = parameter.to_physical(raw[parameter.index]), other.to_physical(raw[other.index])
-                raise UserError(
+                raise BadUsage(
                     f"{parameter.name} is {low:.6g} and {other.name} is {high:.6g}{other._unit()}; "
-                    f"choose {parameter.name} below {other.name}.",
-                    BAD_USAGE,
+                    f"choose {parameter.name} below {other.name}."
                 )
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from greywhale.base.errors import BAD_USAGE, UserError
+from greywhale.base.errors import BadUsage, UserError
 from greywhale.protocol.firmware import JOINTS
 
 Joints = tuple[int, ...]
@@ -19,9 +19,7 @@ def parse(text: str, where: str = "--joints") -> Joints:
     """The joints of a list such as "0,1", in order; raises UserError naming `where` for anything else."""
     words = [word.strip() for word in text.split(",")]
     if not all(word in map(str, ALL) for word in words) or len(set(words)) < len(words):
-        raise UserError(
-            f"{where}: {text!r} is no list of joints; give one or more of 0 to 3, each once, such as 0,1.", BAD_USAGE
-        )
+        raise BadUsage(f"{where}: {text!r} is no list of joints; give one or more of 0 to 3, each once, such as 0,1.")
     return tuple(sorted(map(int, words)))
 
 

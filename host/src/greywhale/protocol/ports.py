@@ -9,7 +9,7 @@ from typing import TypedDict
 
 from serial.tools import list_ports
 
-from greywhale.base.errors import BAD_USAGE, UserError
+from greywhale.base.errors import BadUsage
 from greywhale.base.runtime import private_runtime_directories
 from greywhale.protocol.transport import LINES
 
@@ -69,13 +69,12 @@ def choose_port(named: str | None) -> str:
     if len(likely) == 1:
         return likely[0].device
     if not likely:
-        raise UserError(
+        raise BadUsage(
             "no board was found on any serial port; plug it in, start a simulated one with `greywhale sim`, "
-            "or name its port with --port.",
-            BAD_USAGE,
+            "or name its port with --port."
         )
     names = ", ".join(port.device for port in likely)
-    raise UserError(f"several ports may be the board: {names}; choose one with --port.", BAD_USAGE)
+    raise BadUsage(f"several ports may be the board: {names}; choose one with --port.")
 
 
 def is_bench(device: str) -> bool:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from greywhale.base.errors import BAD_USAGE, MOST_SEED, MOST_WORKERS, UserError, require_within
+from greywhale.base.errors import MOST_SEED, MOST_WORKERS, BadUsage, require_within
 from greywhale.base.types import Controllers, NotedProgress, show_no_progress
 from greywhale.files.trajectory import Trajectory
 from greywhale.optimise import METHODS as OPTIMISERS
@@ -39,13 +39,13 @@ def check_request(
     """Refuse, with exit code 2, a request that fits no model at all."""
     check_strategy(strategy)
     if method not in METHODS:
-        raise UserError(f"there is no method {method!r}; there are {', '.join(METHODS)}.", BAD_USAGE)
+        raise BadUsage(f"there is no method {method!r}; there are {', '.join(METHODS)}.")
     if budget is not None:
         require_within("budget", budget, 1, MOST_BUDGET)
     require_within("seed", seed, 0, MOST_SEED)
     require_within("threads", threads, 0, MOST_WORKERS)
     if bounds and method == "paper":
-        raise UserError("the paper's method has bounds of its own; leave out others.", BAD_USAGE)
+        raise BadUsage("the paper's method has bounds of its own; leave out others.")
     check_bounds(strategy, bounds or {})
 
 
@@ -79,7 +79,7 @@ def tune(
     """
     check_request(strategy=strategy, method=method, budget=budget, seed=seed, threads=threads, bounds=bounds)
     if method == "paper" and model.arm.joints_in_use != ALL:
-        raise UserError("the paper's method is for arms with all four joints; use --method default.", BAD_USAGE)
+        raise BadUsage("the paper's method is for arms with all four joints; use --method default.")
     usual = paper.BUDGET if method == "paper" else DEFAULT_BUDGET
     task = TuningRequest(
         model=model,

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 from greywhale.arm.make.questions import JOINTS_IN_USE, MOTOR_KEYS, SAME_MOTOR, Answers, Question, collect
 from greywhale.arm.parameters import JOINT_NAMES
-from greywhale.base.errors import BAD_USAGE, UserError, cut
+from greywhale.base.errors import BadUsage, cut
 from greywhale.base.formats import toml_file, toml_text
 from greywhale.base.formats.kinds import Kind, refuse_other_kind
 
@@ -69,7 +69,7 @@ class AnswersFile:
         try:
             return question.read(given)
         except ValueError as error:
-            raise UserError(f"{self._path}: {question.where} is {cut(repr(given))}: {error}.", BAD_USAGE) from None
+            raise BadUsage(f"{self._path}: {question.where} is {cut(repr(given))}: {error}.") from None
 
     def refuse_rest(self) -> None:
         """Refuse what was not asked for."""
@@ -78,10 +78,9 @@ class AnswersFile:
             *(f"{name}[{number}].{key}" for (name, number), one in self._tables.items() for key in one),
         ]
         if rest:
-            raise UserError(
+            raise BadUsage(
                 f"{self._path}: {cut(rest[0])} answers no question that is asked here; remove it, or correct its name "
-                "or place (docs/your-arm.md has an example).",
-                BAD_USAGE,
+                "or place (docs/your-arm.md has an example)."
             )
 
     def _take(self, name: str) -> list[dict[str, Any]]:
@@ -91,8 +90,7 @@ class AnswersFile:
             or not all(isinstance(one, dict) for one in given)
             or len(given) > len(JOINT_NAMES)
         ):
-            raise UserError(
-                f"{self._path}: {name} must be tables [[{name}]], one for each of the four {name}s from the base on.",
-                BAD_USAGE,
+            raise BadUsage(
+                f"{self._path}: {name} must be tables [[{name}]], one for each of the four {name}s from the base on."
             )
         return given

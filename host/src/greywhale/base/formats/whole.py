@@ -12,7 +12,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import IO
 
-from greywhale.base.errors import BAD_USAGE, UserError, os_reason
+from greywhale.base.errors import BadUsage, UserError, os_reason
 from greywhale.base.formats.draft import Draft
 
 
@@ -27,7 +27,7 @@ def refuse_inputs(out: Path | None, *inputs: str | Path | None) -> None:
     """Refuse to write over a file that is read from. (A name of an arm that comes with greywhale is no file.)"""
     for source in inputs:
         if out is not None and source is not None and out.exists() and Path(source).exists() and out.samefile(source):
-            raise UserError(f"{out}: this file is read from; write elsewhere.", BAD_USAGE)
+            raise BadUsage(f"{out}: this file is read from; write elsewhere.")
 
 
 def require_writable(path: Path) -> None:
@@ -60,4 +60,4 @@ def make_folder(folder: Path) -> None:
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise UserError(f"{folder}: cannot be made: {os_reason(error)}.", BAD_USAGE) from None
+        raise BadUsage(f"{folder}: cannot be made: {os_reason(error)}.") from None

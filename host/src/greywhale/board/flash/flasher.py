@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from greywhale.base.errors import BAD_USAGE, UserError
+from greywhale.base.errors import BadUsage, UserError
 from greywhale.base.types import Progress, show_no_progress
 from greywhale.board.device import Device
 from greywhale.board.flash import platformio
@@ -66,13 +66,12 @@ def flash(
 def _expected_board(port: str, named: str | None) -> str | None:
     """The board that was named, else what the port says of itself without being opened."""
     if named is not None and named not in BOARDS:
-        raise UserError(f"board {named!r} is unknown; choose one of {', '.join(BOARDS)}.", BAD_USAGE)
+        raise BadUsage(f"board {named!r} is unknown; choose one of {', '.join(BOARDS)}.")
     told = board_of(port)
     if named is not None and told is not None and named != told:
-        raise UserError(
+        raise BadUsage(
             f"{port}: this port belongs to an {BOARDS[told].title}, not to an {BOARDS[named].title}; "
-            "leave --board out, or choose another port.",
-            BAD_USAGE,
+            "leave --board out, or choose another port."
         )
     return named or told
 
@@ -85,10 +84,9 @@ def find_target(port: str, expected: str | None) -> tuple[Target, Bootloader]:
     found = find_bootloader(port, likely, others)
     name = _name_of(port, found)
     if expected is not None and name != expected:
-        raise UserError(
+        raise BadUsage(
             f"{port}: the bootloader of an {BOARDS[name].title} answers, not that of an {BOARDS[expected].title}; "
-            f"choose --board {name}, or another port.",
-            BAD_USAGE,
+            f"choose --board {name}, or another port."
         )
     return Target(name, BOARDS[name], found.dialect.baud), found
 
@@ -128,10 +126,9 @@ def _upload(port: str, target: Target, found: Bootloader, image: Image, report: 
 def _packaged(name: str) -> Image:
     path = packaged_image(name)
     if path is None:
-        raise UserError(
+        raise BadUsage(
             f"this installation of greywhale holds no firmware for an {BOARDS[name].title}; name the firmware folder "
-            "of a checkout with --firmware, or a file with --hex.",
-            BAD_USAGE,
+            "of a checkout with --firmware, or a file with --hex."
         )
     return read_image(path)
 

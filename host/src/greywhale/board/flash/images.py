@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from greywhale.base.errors import BAD_USAGE, UserError, os_reason
+from greywhale.base.errors import BadUsage, os_reason
 from greywhale.board.flash.targets import BOARDS, FlashBoard
 
 PACKAGED = Path(__file__).resolve().parents[2] / "data" / "firmware"
@@ -63,21 +63,21 @@ def read_image(path: Path) -> Image:
 def read_pieces(path: Path) -> list[tuple[int, bytes]]:
     """What a HEX file holds: address and bytes of each stretch without a gap."""
     if not path.is_file():
-        raise UserError(f"{path}: there is no such file; build one with `pio run`, or leave --hex out.", BAD_USAGE)
+        raise BadUsage(f"{path}: there is no such file; build one with `pio run`, or leave --hex out.")
     try:
         lines = path.read_text(encoding="ascii", errors="replace").splitlines()
     except OSError as error:
-        raise UserError(f"{path}: cannot be read: {os_reason(error)}.", BAD_USAGE) from None
+        raise BadUsage(f"{path}: cannot be read: {os_reason(error)}.") from None
     pieces: list[tuple[int, bytearray]] = []
     for address, data in _records(path, lines):
         if address + len(data) > _LARGEST:
-            raise UserError(f"{path}: data at address {address:#x}; no board has as much memory.", BAD_USAGE)
+            raise BadUsage(f"{path}: data at address {address:#x}; no board has as much memory.")
         if pieces and address == pieces[-1][0] + len(pieces[-1][1]):
             pieces[-1][1].extend(data)
         elif data:
             pieces.append((address, bytearray(data)))
     if not pieces:
-        raise UserError(f"{path}: the file holds no data; give the .hex that PlatformIO built.", BAD_USAGE)
+        raise BadUsage(f"{path}: the file holds no data; give the .hex that PlatformIO built.")
     return [(address, bytes(data)) for address, data in pieces]
 
 
@@ -86,16 +86,14 @@ def check_image(image: Image, board: FlashBoard, port: str) -> None:
     if image.record is not None and image.record.signature != board.signature:
         others = [other.title for other in BOARDS.values() if other.signature == image.record.signature]
         meant = f"an {others[0]}" if others else f"a chip with signature {image.record.signature.hex()}"
-        raise UserError(
+        raise BadUsage(
             f"{image.path}: this image is for {meant}, but the board on {port} is an {board.title}; "
-            "choose another file.",
-            BAD_USAGE,
+            "choose another file."
         )
     if image.end > board.space:
-        raise UserError(
+        raise BadUsage(
             f"{image.path}: the image reaches up to byte {image.end}, but an {board.title} has room for "
-            f"{board.space}; choose another file.",
-            BAD_USAGE,
+            f"{board.space}; choose another file."
         )
 
 
@@ -112,7 +110,7 @@ def _records(path: Path, lines: list[str]) -> Iterator[tuple[int, bytes]]:
             return
         elif kind in (_SEGMENT, _LINEAR):
             base = int.from_bytes(data, "big") << (4 if kind == _SEGMENT else 16)
-    raise UserError(f"{path}: the file ends too early; copy or build it again.", BAD_USAGE)
+    raise BadUsage(f"{path}: the file ends too early; copy or build it again.")
 
 
 def _parse(line: str, where: str) -> tuple[int, int, bytes]:
@@ -122,7 +120,7 @@ def _parse(line: str, where: str) -> tuple[int, int, bytes]:
     except ValueError:
         content = b""
     if line[0] != ":" or len(content) < 5 or len(content) != content[0] + 5 or sum(content) % 256:
-        raise UserError(f"{where}: this is no Intel HEX record; give the .hex that PlatformIO built.", BAD_USAGE)
+        raise BadUsage(f"{where}: this is no Intel HEX record; give the .hex that PlatformIO built.")
     return content[3], int.from_bytes(content[1:3], "big"), content[4:-1]
 
 

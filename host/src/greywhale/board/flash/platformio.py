@@ -8,7 +8,7 @@ import shutil
 import sys
 from pathlib import Path
 
-from greywhale.base.errors import BAD_USAGE, UserError
+from greywhale.base.errors import BadUsage, UserError
 from greywhale.base.types import Progress
 from greywhale.board.flash.avrdude import UPLOAD_LIMIT_S, watch_upload
 from greywhale.board.flash.runner import Tool, run_tool
@@ -23,10 +23,9 @@ def find_sources(named: str | Path | None) -> Path | None:
     if named is None:
         return CHECKOUT if (CHECKOUT / "platformio.ini").is_file() else None
     if not (Path(named) / "platformio.ini").is_file():
-        raise UserError(
+        raise BadUsage(
             f"{named} holds no platformio.ini; name the firmware folder of a checkout with --firmware, "
-            "or a file with --hex.",
-            BAD_USAGE,
+            "or a file with --hex."
         )
     return Path(named)
 

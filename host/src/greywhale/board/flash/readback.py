@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from itertools import chain
 from pathlib import Path
 
-from greywhale.base.errors import BAD_USAGE, UserError
+from greywhale.base.errors import BadUsage, UserError
 from greywhale.base.types import Progress, show_no_progress
 from greywhale.board.flash.boot_code import BootCode, look_at_boot_code
 from greywhale.board.flash.bootloader import (
@@ -56,10 +56,9 @@ def shipped_image(board: str) -> Image:
         sources = find_sources(None)
         path = None if sources is None else last_build(sources, BOARDS[board])
     if path is None:
-        raise UserError(
+        raise BadUsage(
             f"this greywhale has no image for an {BOARDS[board].title} to compare with; name one with --hex, or build "
-            "it with `greywhale flash`.",
-            BAD_USAGE,
+            "it with `greywhale flash`."
         )
     return read_image(path)
 

@@ -13,7 +13,7 @@ from pathlib import Path
 
 from greywhale.arm import ArmParameters
 from greywhale.base.bench_process import BenchProcess, RunningBench
-from greywhale.base.errors import BAD_USAGE, UserError
+from greywhale.base.errors import BadUsage
 from greywhale.base.formats.whole import make_folder, write_text
 from greywhale.base.types import NotedProgress, show_no_progress
 from greywhale.board import flash
@@ -172,7 +172,7 @@ def _motion(options: DemoOptions) -> Trajectory:
 
 def _check(what: str, seconds: float, shortest_s: float, longest_s: float) -> None:
     if not shortest_s <= seconds <= longest_s:
-        raise UserError(f"the {what} is {seconds:g} s; it must be {shortest_s:g} to {longest_s:g} s.", BAD_USAGE)
+        raise BadUsage(f"the {what} is {seconds:g} s; it must be {shortest_s:g} to {longest_s:g} s.")
 
 
 def _draw(options: DemoOptions, runs: list[Run], supply_v: float) -> Path:

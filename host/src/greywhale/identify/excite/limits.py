@@ -9,7 +9,7 @@ import numpy as np
 
 from greywhale.arm import ArmParameters
 from greywhale.arm.body import Body
-from greywhale.base.errors import BAD_USAGE, UserError
+from greywhale.base.errors import BadUsage, UserError
 from greywhale.base.types import Floats
 from greywhale.identify import sampled_plants
 from greywhale.identify.space import MOTOR, Space
@@ -59,7 +59,7 @@ def limits_of(
     require_same("the arm file", arm.joints_in_use, "the board", table.joints_in_use)
     for joint in ranges:
         if joint not in arm.joints_in_use:
-            raise UserError(f"--range names joint {joint}, which is not in use; leave it out.", BAD_USAGE)
+            raise BadUsage(f"--range names joint {joint}, which is not in use; leave it out.")
     low, high = np.zeros(JOINTS), np.zeros(JOINTS)
     for joint in arm.joints_in_use:
         stops = arm.joint[joint].stops
@@ -140,15 +140,13 @@ def parse_range(text: str) -> tuple[int, tuple[float, float]]:
     except (ValueError, IndexError):
         good = False
     if not good:
-        raise UserError(
+        raise BadUsage(
             f'--range is "{text}", but it must be JOINT:MIN:MAX with a joint 0..{JOINTS - 1} and two angles in rad, '
-            "such as 1:-0.5:0.8.",
-            BAD_USAGE,
+            "such as 1:-0.5:0.8."
         )
     if not -FARTHEST_RAD < low < high < FARTHEST_RAD:
-        raise UserError(
+        raise BadUsage(
             f'--range is "{text}", but MIN must be less than MAX, and both within ±{FARTHEST_RAD:g} rad, such as '
-            f"{joint}:-0.5:0.8.",
-            BAD_USAGE,
+            f"{joint}:-0.5:0.8."
         )
     return joint, (low, high)

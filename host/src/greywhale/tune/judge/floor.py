@@ -31,7 +31,7 @@ from numpy.typing import NDArray
 
 from greywhale.arm import ArmParameters
 from greywhale.arm.plants import check_plants, column, rigid_joints
-from greywhale.base.errors import BAD_USAGE, UserError
+from greywhale.base.errors import BadUsage
 from greywhale.base.types import Floats
 from greywhale.files.trajectory import Trajectory
 from greywhale.motion.runs import resting
@@ -137,7 +137,7 @@ def _loop_of(
 ) -> _Loop:
     plant = check_plants(arm if isinstance(arm, np.ndarray) else plant_row(arm))
     if len(plant) != 1:
-        raise UserError(f"the floor is of one plant, not of {len(plant)}; call it for each.", BAD_USAGE)
+        raise BadUsage(f"the floor is of one plant, not of {len(plant)}; call it for each.")
     slices = leader_slices(motion, wait_s, after_s, resample) if isinstance(motion, Trajectory) else _checked(motion)
     slices = np.where(rigid_joints(plant[0]), 0.0, slices)  # what is not in use is not led
     loop = _Loop(slices, plant[0], _supply(plant[0], supply_v), _delay_slices(delay_s), threads)
@@ -268,9 +268,9 @@ def _sum_lead(move: _Move, leader: Floats, angles: Floats) -> float:
 
 def _checked(slices: Floats) -> Floats:
     if slices.ndim != 2 or slices.shape[1] != JOINTS or not len(slices) or len(slices) % SLICES_PER_TICK:
-        raise UserError(f"the leader has the shape {slices.shape}, but (4 x ticks, 4) is needed.", BAD_USAGE)
+        raise BadUsage(f"the leader has the shape {slices.shape}, but (4 x ticks, 4) is needed.")
     if not np.isfinite(slices).all():
-        raise UserError("the leader holds an angle that is not a finite number.", BAD_USAGE)
+        raise BadUsage("the leader holds an angle that is not a finite number.")
     return np.ascontiguousarray(slices, dtype=np.float64)
 
 
@@ -279,13 +279,13 @@ def _supply(plant: Floats, supply_v: float | None) -> float:
     if supply_v is None:
         return full
     if not 0.0 < supply_v < np.inf:
-        raise UserError(f"supply_v is {supply_v:g}, but it must be a voltage above 0 V.", BAD_USAGE)
+        raise BadUsage(f"supply_v is {supply_v:g}, but it must be a voltage above 0 V.")
     return min(supply_v, full)
 
 
 def _delay_slices(delay_s: float) -> int:
     if not 0.0 <= delay_s <= 1.0:
-        raise UserError(f"delay_s is {delay_s:g}, but it must lie within 0..1 s.", BAD_USAGE)
+        raise BadUsage(f"delay_s is {delay_s:g}, but it must lie within 0..1 s.")
     return round(delay_s / SLICE_S)
 
 
@@ -293,8 +293,7 @@ def _require_reach(loop: _Loop) -> None:
     for joint, angle in enumerate(loop.slices[0]):
         low, high = (loop.plant[column(f"stop_{side}", joint)] for side in ("min", "max"))
         if not low <= angle <= high:
-            raise UserError(
+            raise BadUsage(
                 f"the leader starts with joint {joint} at {angle:g} rad, beyond the follower's stops, "
-                f"{low:g} to {high:g} rad; shift the motion.",
-                BAD_USAGE,
+                f"{low:g} to {high:g} rad; shift the motion."
             )

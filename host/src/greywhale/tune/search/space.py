@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from greywhale.base.elementary import exp, log
-from greywhale.base.errors import BAD_USAGE, UserError
+from greywhale.base.errors import BadUsage
 from greywhale.base.types import Controllers, Floats
 from greywhale.fuzzy.settings import (
     GAIN_UNIT,
@@ -156,10 +156,9 @@ class Space:
         """The same box with other bounds for some variables, which `check_bounds` must have passed."""
         most = largest_ki(period_ms)
         if "Ki" in bounds and bounds["Ki"][1] > most:
-            raise UserError(
+            raise BadUsage(
                 f"the bounds of Ki reach to {bounds['Ki'][1]:g}, but at a control period of {period_ms} ms the "
-                f"firmware takes at most {most:g}.",
-                BAD_USAGE,
+                f"firmware takes at most {most:g}."
             )
         changed = [
             replace(variable, low=bounds[variable.name][0], high=bounds[variable.name][1])
@@ -252,25 +251,24 @@ def largest_ki(period_ms: int) -> float:
 def check_strategy(strategy: str) -> None:
     """Refuse a strategy that does not exist."""
     if strategy not in STRATEGIES:
-        raise UserError(f"there is no strategy {strategy!r}; there are {', '.join(STRATEGIES)}.", BAD_USAGE)
+        raise BadUsage(f"there is no strategy {strategy!r}; there are {', '.join(STRATEGIES)}.")
 
 
 def check_bounds(strategy: str, bounds: Bounds) -> None:
     """Refuse bounds (in the file's units and signs) that the strategy does not search or no board can store."""
     for name, (low, high) in bounds.items():
         if name not in NAMES:
-            raise UserError(f"there is no bound for {name!r}; there are {', '.join(NAMES)}.", BAD_USAGE)
+            raise BadUsage(f"there is no bound for {name!r}; there are {', '.join(NAMES)}.")
         if name in ((*GAINS, CE_TICKS) if strategy == "mf" else SETS if strategy == "sf" else ()):
-            raise UserError(f"{name} is not searched by strategy {strategy}; leave out its bounds.", BAD_USAGE)
+            raise BadUsage(f"{name} is not searched by strategy {strategy}; leave out its bounds.")
         if not (math.isfinite(low) and math.isfinite(high)):
-            raise UserError(f"the bounds of {name} are {low:g} and {high:g}; give two finite numbers.", BAD_USAGE)
+            raise BadUsage(f"the bounds of {name} are {low:g} and {high:g}; give two finite numbers.")
         if low >= high:
-            raise UserError(f"the bounds of {name} are {low:g} and {high:g}; give the lower one first.", BAD_USAGE)
+            raise BadUsage(f"the bounds of {name} are {low:g} and {high:g}; give the lower one first.")
         least, most = storable_range(name)
         if not (least <= low and high <= most):
-            raise UserError(
-                f"the bounds of {name} are {low:g} and {high:g}, but they must lie within {least:g}..{most:g}.",
-                BAD_USAGE,
+            raise BadUsage(
+                f"the bounds of {name} are {low:g} and {high:g}, but they must lie within {least:g}..{most:g}."
             )
 
 

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from greywhale.arm import ArmParameters
 from greywhale.arm.plants import column
-from greywhale.base.errors import BAD_USAGE, UserError
+from greywhale.base.errors import BadUsage
 from greywhale.base.types import Floats
 from greywhale.files.trajectory import Trajectory
 from greywhale.motion import human_reaches
@@ -122,10 +122,9 @@ def reach(arm: ArmParameters, table: ParameterTable, plants: Floats) -> tuple[Fl
         low.append(max(limits[0], float(stops[0].max())) + CLEAR_RAD)
         high.append(min(limits[1], float(stops[1].min())) - CLEAR_RAD)
         if high[-1] - low[-1] < LEAST_RANGE_RAD:
-            raise UserError(
+            raise BadUsage(
                 f"joint {joint} has no room to move: limits {limits[0]:g} to {limits[1]:g} rad, stops "
-                f"{arm.joint[joint].stops.min:g} to {arm.joint[joint].stops.max:g} rad; correct them.",
-                BAD_USAGE,
+                f"{arm.joint[joint].stops.min:g} to {arm.joint[joint].stops.max:g} rad; correct them."
             )
     return np.array(low), np.array(high)
 
