@@ -243,4 +243,3 @@ def test_the_view_says_that_it_reads_the_verbs_until_they_are_there(
     ready.set()
     expect(page.get_by_role("button", name="record", exact=True)).to_be_visible()
     expect(reading).to_be_hidden()
-    page.locator("button.enable:enabled").wait_for()

@@ -102,6 +102,8 @@ def test_a_second_page_watches_a_reload_loses_nothing_and_a_page_that_is_gone_st
         second.page.get_by_role("button", name="Take control").click()
         expect(second.page.get_by_role("button", name="Enable")).to_be_enabled()
         assert "token" not in second.page.url
+        second.page.get_by_role("button", name="Let go").click()
+        expect(page.get_by_role("button", name="Take control")).to_be_enabled()  # so the page that loads anew drives
         second.page.reload()
         expect(second.page.locator(".values thead th").first).to_have_text("now")
         kept = second.page.locator(".live").evaluate("({ dataset }) => ({ ...dataset })")
