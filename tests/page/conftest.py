@@ -6,10 +6,10 @@ import contextlib
 from collections.abc import Iterator
 
 import pytest
-from playwright.sync_api import BrowserContext, Page, expect
+from playwright.sync_api import BrowserContext, Page
 
 from tests.page import stage as stages
-from tests.page.stage import Stage
+from tests.page.stage import Stage, await_state
 
 
 @pytest.fixture(scope="session")
@@ -45,4 +45,4 @@ def page(shared_page: Page) -> Iterator[Page]:
     """It drives a board whose motors other tests have left off."""
     yield shared_page
     shared_page.get_by_role("button", name="Stop", exact=True).click()
-    expect(shared_page.locator(".pill")).to_have_text("disabled")
+    await_state(shared_page, "disabled")

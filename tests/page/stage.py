@@ -314,3 +314,9 @@ def visit(context: BrowserContext, stage: Place, script: str = "") -> Iterator[V
     yield told
     page.close()
     assert told.strange == []
+
+
+def await_state(page: Page, state: str) -> None:
+    """Wait until the page shows this state of the board. `expect` would look once a second, and this at once."""
+    shown = "state => document.querySelector('.pill')?.textContent === state"
+    page.wait_for_function(shown, arg=state, polling=50)

@@ -6,14 +6,14 @@ import pytest
 from playwright.sync_api import Page, expect
 
 from greywhale.protocol.schema import Sample
-from tests.page.stage import Stage
+from tests.page.stage import Stage, await_state
 
 pytestmark = pytest.mark.slow
 
 
 def test_a_hand_on_the_page_leads_and_the_arm_follows(page: Page, stage: Stage) -> None:
     page.get_by_role("button", name="Enable").click()
-    expect(page.locator(".pill")).to_have_text("following")
+    await_state(page, "following")
     page.get_by_role("button", name="Bench").click()
     page.get_by_label("Leader, base yaw, rad").fill("0.5")
     wanted = 0.5 / Sample.LSB["leader"]
@@ -41,7 +41,7 @@ def test_what_is_broken_on_the_page_is_broken_on_the_bench(page: Page, stage: St
     page.get_by_label("Supply, V").fill("9")
     page.get_by_label("Supply, V").dispatch_event("change")
     page.get_by_role("button", name="Enable").click()
-    expect(page.locator(".pill")).to_have_text("following")
+    await_state(page, "following")
     assert stage.command("controls")["supply"]["value"] == pytest.approx(9.0, abs=0.3)
 
 

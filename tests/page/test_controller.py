@@ -20,7 +20,7 @@ from tests.dashboard.browser import BoardSocket
 from tests.dashboard.browser import Page as Watcher
 from tests.page.conftest import at_rest
 from tests.page.drag import drag, value_of
-from tests.page.stage import TOKEN, Stage
+from tests.page.stage import TOKEN, Stage, await_state
 
 pytestmark = pytest.mark.slow
 
@@ -79,18 +79,18 @@ def test_corners_keep_to_what_the_board_takes_and_steps_can_be_undone(page: Page
 def test_two_controllers_are_compared_on_the_running_arm_by_one_key(page: Page, stage: Stage) -> None:
     stage.hold(20)  # a leader that rests is still near when the motors go on again
     page.get_by_role("button", name="Enable").click()
-    expect(page.locator(".pill")).to_have_text("following")
+    await_state(page, "following")
     page.get_by_role("button", name="Controller").click()
     drag(page, "Ze_c", 0.1)
     page.get_by_role("button", name="Apply").click()
     expect(page.get_by_role("button", name="A / B")).to_be_enabled()
-    expect(page.locator(".pill")).to_have_text("following")
+    await_state(page, "following")
     assert stage.runs(ZE_C)[ZE_C.name] > DEFAULTS[ZE_C.index]
     page.keyboard.press("x")
     expect(page.get_by_role("button", name="B / A")).to_be_enabled()
     expect(page.locator(".notice")).to_be_hidden()
     assert stage.runs() == {}
-    expect(page.locator(".pill")).to_have_text("following")
+    await_state(page, "following")
 
 
 def test_what_another_host_changed_is_shown_and_what_it_left_half_done_does_not_run(page: Page, stage: Stage) -> None:

@@ -13,7 +13,7 @@ from greywhale.files.log import read_log
 from greywhale.files.log.check import Check
 from greywhale.protocol.schema import Sample, State
 from tests.page import stage as stages
-from tests.page.stage import Stage
+from tests.page.stage import Stage, await_state
 
 pytestmark = pytest.mark.slow
 
@@ -29,7 +29,7 @@ def start(page: Page, stage: Stage) -> None:
 
 def enable(page: Page) -> None:
     page.get_by_role("button", name="Enable").click()
-    expect(page.locator(".pill")).to_have_text("following")
+    await_state(page, "following")
 
 
 def test_the_page_saves_and_shows_the_boards_samples_as_they_are(page: Page, stage: Stage, tmp_path: Path) -> None:
@@ -94,11 +94,11 @@ def test_a_second_page_watches_a_reload_loses_nothing_and_a_page_that_is_gone_st
 ) -> None:
     start(page, stage)
     with stages.visit(context, stage) as second:
-        expect(second.page.locator(".pill")).to_have_text("following")
+        await_state(second.page, "following")
         expect(second.page.get_by_role("button", name="Enable")).to_be_disabled()
         expect(second.page.get_by_role("button", name="Take control")).to_be_disabled()
         page.get_by_role("button", name="Let go").click()
-        expect(second.page.locator(".pill")).to_have_text("disabled")
+        await_state(second.page, "disabled")
         second.page.get_by_role("button", name="Take control").click()
         expect(second.page.get_by_role("button", name="Enable")).to_be_enabled()
         assert "token" not in second.page.url
@@ -130,7 +130,7 @@ def test_a_fault_is_captured_and_told_with_its_remedy_until_it_is_cleared(page: 
     tick = next(sample.tick for sample in stage.samples() if sample.state is State.FAULT)
     expect(page.get_by_text(f"It happened at {tick / 1000:.3f} s.")).to_be_visible()
     fault.get_by_role("button", name="Clear fault").click()
-    expect(page.locator(".pill")).to_have_text("disabled")
+    await_state(page, "disabled")
 
 
 def test_the_clutch_is_disengaged_by_a_click_and_by_the_pedal(page: Page, stage: Stage) -> None:

@@ -18,6 +18,7 @@ from tests.page import stage as stages
 from tests.page.barriers import DARK_AND_NARROW, require_no_barrier
 from tests.page.drag import drag, value_of
 from tests.page.site.serve_folder import Site, serve
+from tests.page.stage import await_state
 from tools import ROOT
 from tools.docs.links import anchors
 
@@ -59,7 +60,7 @@ def visited(context: BrowserContext, site: Site) -> Iterator[Page]:
 def test_a_visitor_sees_an_arm_that_follows_and_what_needs_a_host_is_not_there(visited: Page) -> None:
     expect(visited.locator("nav button")).to_have_text(["Arm", "Live", "Controller", "Parameters", "Bench"])
     expect(visited.get_by_text("no cycle timing")).to_be_visible()
-    expect(visited.locator(".pill")).to_have_text("following")
+    await_state(visited, "following")
     visited.get_by_role("button", name="Live").click()
     visited.wait_for_function(
         """() => [...document.querySelectorAll(".values tbody tr")].some((row) => {
@@ -75,20 +76,20 @@ def test_a_visitor_sees_an_arm_that_follows_and_what_needs_a_host_is_not_there(v
     expect(visited.get_by_role("button", name="Hold still")).to_be_visible()
     expect(visited.get_by_label("Recorded motion")).to_have_count(0)
     visited.keyboard.press("Space")
-    expect(visited.locator(".pill")).to_have_text("disabled")
+    await_state(visited, "disabled")
 
 
 def test_each_thing_to_try_says_what_happened_and_where_to_read_more(visited: Page) -> None:
     expect(visited.locator(".try h2")).to_have_text(["Pull the leader", "Break a wire", "Let it tune"])
-    pill, said = visited.locator(".pill"), visited.locator(".try p[role=status]:visible")
-    expect(pill).to_have_text("following")
+    said = visited.locator(".try p[role=status]:visible")
+    await_state(visited, "following")
     expect(said).to_have_count(0)
     visited.get_by_role("button", name="Pull the shoulder").click()
     expect(said).to_have_count(1)
     visited.get_by_role("button", name="Break the wire").click()
-    expect(pill).to_have_text("fault")
+    await_state(visited, "fault")
     visited.get_by_role("button", name="Mend it and go on").click()
-    expect(pill).to_have_text("following")
+    await_state(visited, "following")
     visited.get_by_role("button", name="Let it reach on").click()
     expect(visited.get_by_role("button", name="Pull the shoulder")).to_be_visible()
     visited.get_by_role("button", name="Open the controllers").click()
@@ -118,7 +119,7 @@ def test_a_lesson_opens_in_the_state_that_its_link_names(context: BrowserContext
         expect(page.locator(".notice")).to_have_text(
             re.compile('set aside, for noise is "99": choose a number from 0 to 10.')
         )
-        expect(page.locator(".pill")).to_have_text("following")
+        await_state(page, "following")
 
 
 def test_who_stops_before_the_arm_has_moved_is_obeyed(context: BrowserContext, site: Site, tmp_path: Path) -> None:
@@ -141,7 +142,7 @@ def tune_a_little(page: Page) -> None:
 
 
 def test_who_lets_the_page_tune_sees_the_course_and_runs_what_was_found(visited: Page) -> None:
-    expect(visited.locator(".pill")).to_have_text("following")
+    await_state(visited, "following")
     visited.get_by_role("button", name="Controller", exact=True).click()
     drag(visited, "Pe_b", 0.1)
     tune_a_little(visited)
@@ -149,14 +150,14 @@ def test_who_lets_the_page_tune_sees_the_course_and_runs_what_was_found(visited:
     expect(visited.get_by_label("The same hand, followed before and after")).to_be_visible()
     visited.get_by_role("button", name="Apply").click()
     expect(visited.get_by_text("The board runs these controllers.")).to_be_visible()
-    expect(visited.locator(".pill")).to_have_text("following")
+    await_state(visited, "following")
     require_no_barrier(visited, DARK_AND_NARROW)
 
 
 def test_one_file_alone_opens_from_a_disk_and_tunes(context: BrowserContext, folder: Path, tmp_path: Path) -> None:
     alone = (folder / "greywhale.html").rename(tmp_path / "alone.html")
     with stages.visit(context, OnDisk(alone.as_uri())) as visit:
-        expect(visit.page.locator(".pill")).to_have_text("following")
+        await_state(visit.page, "following")
         visit.page.locator("canvas").first.wait_for()
         tune_a_little(visit.page)
 
@@ -175,7 +176,7 @@ def test_it_opens_without_a_network_after_the_first_visit_and_a_new_build_shows_
         online.close()
         page.reload()
         expect(page).to_have_title("anew")
-        expect(page.locator(".pill")).to_have_text("following")
+        await_state(page, "following")
         page.locator("canvas[data-tick]").wait_for()
 
 
@@ -193,7 +194,7 @@ def build_anew(folder: Path) -> str:
 
 
 def test_a_wire_is_broken_and_mended(visited: Page) -> None:
-    expect(visited.locator(".pill")).to_have_text("following")
+    await_state(visited, "following")
     visited.get_by_role("button", name="Bench").click()
     visited.get_by_role("button", name="Hold still").click()
     visited.get_by_label("Speed of time, ×").fill("10")
@@ -201,19 +202,19 @@ def test_a_wire_is_broken_and_mended(visited: Page) -> None:
     visited.get_by_label("Fault").select_option("pot-open")
     visited.get_by_label("Where").select_option("follower1")
     visited.get_by_role("button", name="Break", exact=True).click()
-    expect(visited.locator(".pill")).to_have_text("fault")
+    await_state(visited, "fault")
     visited.get_by_role("button", name="Mend all").click()
     expect(visited.locator(".differences li")).to_have_count(0)
     visited.get_by_role("button", name="Live").click()
     fault = visited.get_by_role("alert").filter(has_text="follower potentiometer 1")
     fault.get_by_role("button", name="Clear fault").click()
-    expect(visited.locator(".pill")).to_have_text("disabled")
+    await_state(visited, "disabled")
     visited.get_by_role("button", name="Enable").click()
-    expect(visited.locator(".pill")).to_have_text("following")
+    await_state(visited, "following")
 
 
 def test_what_is_stored_is_there_after_a_reload_unless_it_is_damaged(visited: Page) -> None:
-    expect(visited.locator(".pill")).to_have_text("following")
+    await_state(visited, "following")
     visited.get_by_role("button", name="Stop").click()
     visited.get_by_role("button", name="Controller", exact=True).click()
     drag(visited, "Pe_b", 0.1)
