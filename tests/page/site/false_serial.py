@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -18,21 +18,6 @@ from tests.page.site.serve_folder import Site
 # So long the board lives at a time: until it has answered what it was asked, and longer where it was asked nothing.
 ANSWER_S, TURN_S, BOOTLOADER_TURN_S = 0.01, 0.06, 0.04
 SCRIPT = Path(__file__).with_name("false_serial.js").read_text("utf-8")
-
-
-@dataclass(frozen=True)
-class AtPort:
-    """The site, opened for a board at a port."""
-
-    site: Site
-
-    @property
-    def port(self) -> int:
-        return self.site.port
-
-    @property
-    def page_address(self) -> str:
-        return f"{self.site.page_address}?board=port"
 
 
 class Cable:
@@ -92,6 +77,6 @@ class Cable:
 def connected(context: BrowserContext, site: Site, bench: LockStepBench) -> Iterator[tuple[Page, Cable]]:
     """A page for the board at the port, which is not open yet."""
     cable = Cable(bench)
-    with stages.visit(context, AtPort(site), SCRIPT) as visit:
+    with stages.visit(context, replace(site, said="?board=port"), SCRIPT) as visit:
         visit.page.expose_function("boardPort", cable.carry)
         yield visit.page, cable

@@ -13,13 +13,14 @@ from pathlib import Path
 
 @dataclass(frozen=True)
 class Site:
-    """Where the folder is handed out."""
+    """Where the folder is handed out, and what the page's address says beyond that."""
 
     port: int
+    said: str = ""
 
     @property
     def page_address(self) -> str:
-        return f"http://127.0.0.1:{self.port}/"
+        return f"http://127.0.0.1:{self.port}/{self.said}"
 
 
 class _Quiet(SimpleHTTPRequestHandler):
