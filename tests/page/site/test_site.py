@@ -172,7 +172,8 @@ def test_it_opens_without_a_network_after_the_first_visit_and_a_new_build_shows_
 ) -> None:
     own = shutil.copytree(folder, tmp_path / "site")
     with ExitStack() as online, ExitStack() as visits:
-        page = visits.enter_context(stages.visit(context, online.enter_context(serve(own)))).page
+        served = replace(online.enter_context(serve(own)), said="#view=live")
+        page = visits.enter_context(stages.visit(context, served)).page
         page.evaluate("navigator.serviceWorker.ready.then(() => null)")
         new = build_anew(own)
         page.reload()
@@ -182,6 +183,7 @@ def test_it_opens_without_a_network_after_the_first_visit_and_a_new_build_shows_
         page.reload()
         expect(page).to_have_title("anew")
         await_state(page, "following")
+        page.get_by_role("button", name="Arm", exact=True).click()  # not looked at while there was a network
         page.locator("canvas[data-tick]").wait_for()
 
 
