@@ -23,6 +23,7 @@ from greywhale.cli.story.practice import tables
 from greywhale.files.arm import default_arm, load_arm
 from greywhale.identify import identify
 from greywhale.optimise import DEFAULT
+from greywhale.optimise.significance import holm
 from greywhale.protocol.table import ParameterTable
 from greywhale.tune.default import SEARCH_PLANTS, DefaultMethod
 from greywhale.tune.model import Model, load_model
@@ -34,7 +35,7 @@ from tools.benchmarks.study import repeat, threads
 from tools.benchmarks.tuning import practised
 from tools.support.recordings import random_arm
 
-METHODS = tuple(os.environ.get("GREYWHALE_METHODS", "gwo-woa-relative,cma-es,de,pso").split(","))
+METHODS = tuple(os.environ.get("GREYWHALE_METHODS", "gwo-woa-relative,gwo-woa,gwo-woa-printed,random").split(","))
 OURS = METHODS[0]
 BUDGET = int(os.environ.get("GREYWHALE_BUDGET", "3000"))
 SEEDS = range(int(os.environ.get("GREYWHALE_SEEDS", "20")))
@@ -84,12 +85,14 @@ def cost(seed: int, model: str, method: str, budget: int) -> float:
     return float(judge.costs(search.found.best[None]).sum())
 
 
-def verdict(own: Floats, other: Floats) -> tuple[str, float]:
-    """Ours against another, paired by arm and seed: lower, higher or not told apart, and the chance among equals."""
-    chance = float(wilcoxon(own, other).pvalue)
-    if chance >= SIGNIFICANCE:
-        return "not told apart", chance
-    return ("lower" if np.median(own / other) < 1.0 else "higher"), chance
+def verdicts(own: Floats, others: dict[str, Floats]) -> dict[str, str]:
+    """Ours against each other, paired by arm and seed: lower, higher or not told apart, and Holm's p."""
+    words = {}
+    chances = holm([float(wilcoxon(own, other).pvalue) for other in others.values()])
+    for (method, other), chance in zip(others.items(), chances, strict=True):
+        told = "lower" if np.median(own / other) < 1.0 else "higher"
+        words[method] = f"{told if chance < SIGNIFICANCE else 'not told apart'}, p = {chance:.2g}"
+    return words
 
 
 def table(found: list[dict[str, Floats]]) -> str:
@@ -97,18 +100,17 @@ def table(found: list[dict[str, Floats]]) -> str:
     together = {method: np.concatenate([one[method] for one in found]) for method in METHODS}
     ranks = rankdata(np.array(list(together.values())), axis=0).mean(axis=1)
     rank = dict(zip(together, ranks, strict=True))
+    against = verdicts(together[OURS], {method: together[method] for method in METHODS if method != OURS})
     arms = " | ".join("default" if number == 0 else f"random {number}" for number in ARMS)
     lines = [
         f"Cost of all joints after {BUDGET} evaluations, median of {len(SEEDS)} seeds (highest minus lowest).",
         "",
-        f"| method | {arms} | mean rank of {len(METHODS)} | {OURS} against it (Wilcoxon) |",
+        f"| method | {arms} | mean rank of {len(METHODS)} | {OURS} against it (Wilcoxon, Holm) |",
         "|" + "---|" * (len(found) + 3),
     ]
     for method in sorted(METHODS, key=lambda name: rank[name]):
         medians = " | ".join(f"{np.median(one[method]):.3f} ({np.ptp(one[method]):.3f})" for one in found)
-        word, chance = verdict(together[OURS], together[method]) if method != OURS else ("", 0.0)
-        against = f"{word}, p = {chance:.2g}" if word else ""
-        lines.append(f"| {method} | {medians} | {rank[method]:.2f} | {against} |")
+        lines.append(f"| {method} | {medians} | {rank[method]:.2f} | {against.get(method, '')} |")
     return "\n".join(lines) + "\n"
 
 
