@@ -12,6 +12,7 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
+import pytest
 
 from greywhale.arm import ArmParameters
 from greywhale.arm.parameters import with_usual_noise
@@ -19,18 +20,23 @@ from greywhale.arm.plants import plant_row
 from greywhale.base.errors import UserError
 from greywhale.base.types import show_no_progress
 from greywhale.board.stream import Received
-from greywhale.commission import CommissioningRequest
+from greywhale.commission import CommissioningRequest, foresee, learn, run
 from greywhale.commission.arm_on_port import PlayedMotion
 from greywhale.commission.hunting_stop import Hunting, HuntingStop
+from greywhale.commission.journal import CommissioningJournal
+from greywhale.commission.learn import LearntController
 from greywhale.commission.motions import JointRange
+from greywhale.commission.search import KD, KI, KP
 from greywhale.files.log import LogWriter, read_log
 from greywhale.files.log.layout import Origin
 from greywhale.files.trajectory import Trajectory
+from greywhale.motion import multi_steps
 from greywhale.protocol import schema
 from greywhale.protocol.firmware import ANGLE_LSB, JOINTS, TICK_S, pwm_steps
 from greywhale.protocol.table import ParameterTable
 from greywhale.simulate.closed_loop import ClosedLoop, known_readings
 from greywhale.simulate.controllers import controllers_of
+from greywhale.tune.model import Model
 from tests.tune.models import write_model
 
 POSE = np.array([0.0, 0.4, 0.0, 0.0])
@@ -93,6 +99,26 @@ def options_in(folder: Path) -> Callable[..., CommissioningRequest]:
         return CommissioningRequest(**given | changes)
 
     return make
+
+
+def in_no_time(rig: SimulatedRig, patch: pytest.MonkeyPatch) -> None:
+    """No board; controllers are found at once, twice as stiff, and too stiff for joint 2; few steps are foreseen."""
+
+    def find(
+        book: CommissioningJournal, name: str, model: Model, start: np.ndarray, **options: object
+    ) -> LearntController:
+        rows = start.copy()
+        rows[:, [KP, KI]] *= 2
+        rows[:, KD] = np.rint(1.4 * rows[:, KD])
+        rows[2, KP] *= 10
+        book.note(name, {})
+        return LearntController(model.arm, rows, (), True)
+
+    patch.setattr(run, "connected", rig.connected)
+    patch.setattr(learn, "find_controllers", find)
+    steps = multi_steps()
+    few = Trajectory(steps.time_s[steps.time_s < 4.0], steps.angles[steps.time_s < 4.0])
+    patch.setattr(foresee, "multi_steps", lambda: few)
 
 
 _known: dict[tuple[object, ...], tuple[bytes, int | None]] = {}

@@ -11,21 +11,16 @@ import pytest
 
 from greywhale.arm import ArmParameters
 from greywhale.base.errors import UserError
-from greywhale.commission import CommissioningRequest, commission, foresee, learn, run
-from greywhale.commission.journal import CommissioningJournal
-from greywhale.commission.learn import LearntController
+from greywhale.commission import CommissioningRequest, commission, learn, run
 from greywhale.commission.page import facts, save_page
 from greywhale.commission.result import CommissioningResult, errors_beside
-from greywhale.commission.search import KD, KI, KP
 from greywhale.files.arm import default_arm, load_arm
 from greywhale.files.leader import load_leader
 from greywhale.files.model import arm_toml
-from greywhale.files.trajectory import Trajectory
-from greywhale.motion import multi_steps
 from greywhale.protocol.table import ParameterTable
 from greywhale.simulate.controllers import controllers_of
 from greywhale.tune.model import Model, load_model
-from tests.commission.simulated import SimulatedRig, options_in
+from tests.commission.simulated import SimulatedRig, in_no_time, options_in
 from tests.support.interrupts import ctrl_c_at
 from tests.support.tuning import judge_nothing, shorten
 from tests.tune.models import write_model
@@ -35,26 +30,6 @@ Make = Callable[..., CommissioningRequest]
 
 
 find_controllers = learn.find_controllers
-
-
-def in_no_time(rig: SimulatedRig, patch: pytest.MonkeyPatch) -> None:
-    """No board; controllers are found at once, twice as stiff, and too stiff for joint 2; few steps are foreseen."""
-
-    def find(
-        book: CommissioningJournal, name: str, model: Model, start: np.ndarray, **options: object
-    ) -> LearntController:
-        rows = start.copy()
-        rows[:, [KP, KI]] *= 2
-        rows[:, KD] = np.rint(1.4 * rows[:, KD])
-        rows[2, KP] *= 10
-        book.note(name, {})
-        return LearntController(model.arm, rows, (), True)
-
-    patch.setattr(run, "connected", rig.connected)
-    patch.setattr(learn, "find_controllers", find)
-    steps = multi_steps()
-    few = Trajectory(steps.time_s[steps.time_s < 4.0], steps.angles[steps.time_s < 4.0])
-    patch.setattr(foresee, "multi_steps", lambda: few)
 
 
 @pytest.fixture(autouse=True)

@@ -21,11 +21,7 @@ from greywhale.cli import flash as flash_verb
 from greywhale.cli import identify as identify_verb
 from greywhale.cli import tune as tune_verb
 from greywhale.cli.story import DemoOptions
-from greywhale.commission import CommissioningRequest, learn
-from greywhale.commission import run as commission_run
-from greywhale.commission.journal import CommissioningJournal
-from greywhale.commission.learn import LearntController
-from greywhale.commission.search import KI, KP
+from greywhale.commission import CommissioningRequest
 from greywhale.dashboard import server as dashboard_server
 from greywhale.files import parameter_file
 from greywhale.files.arm import content_of, default_arm, load_arm
@@ -41,11 +37,11 @@ from greywhale.reproduce.pages import report as reproduce_report
 from greywhale.reproduce.pages.document import Document
 from greywhale.reproduce.request import Request
 from greywhale.tune import tune
-from greywhale.tune.model import Model, load_model
+from greywhale.tune.model import load_model
 from greywhale_sim import serve as bench_serve
 from greywhale_sim.lockstep import LockStepBench
 from greywhale_sim.words import lock_step
-from tests.commission.simulated import SimulatedRig
+from tests.commission.simulated import SimulatedRig, in_no_time
 from tests.docs.running import Once, run
 from tests.support.demo import in_this_process
 from tests.tune.models import write_model
@@ -127,20 +123,10 @@ def commissioned(yours: Path, tmp_path_factory: pytest.TempPathFactory) -> Once:
     """One round on an arm that the native loop simulates; the controllers to try are found at once."""
     real = greywhale.commission.commission
     out = tmp_path_factory.mktemp("commission") / "out"
-    rig = SimulatedRig(default_arm())
-
-    def find(
-        book: CommissioningJournal, name: str, model: Model, start: np.ndarray, **options: object
-    ) -> LearntController:
-        rows = start.copy()
-        rows[:, [KP, KI]] *= 2
-        book.note(name, {})
-        return LearntController(model.arm, rows, (), True)
 
     def compute() -> Any:
         with pytest.MonkeyPatch.context() as patch:
-            patch.setattr(commission_run, "connected", rig.connected)
-            patch.setattr(learn, "find_controllers", find)
+            in_no_time(SimulatedRig(default_arm()), patch)
             return real(
                 CommissioningRequest(port="port", out=out, model=yours / "model.toml", rounds=1, trials=1, budget=4),
                 None,
