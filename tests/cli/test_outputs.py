@@ -192,8 +192,6 @@ WRITES = {
         (["evaluate", "log.csv", "--picture", "x.bmp"], "x.bmp: pictures end in .png, .svg, .pdf."),
         (["compare", "--out", "x.txt"], "x.txt: reports end in .csv, .png, .svg, .pdf."),
         (["demo", "--controller", "none.toml"], "none.toml: cannot be read: no such file or directory."),
-        (["demo", "--arm", "none.toml"], "none.toml: cannot be read: no such file or directory."),
-        (["demo", "--leader", "none.csv"], "none.csv: cannot be read: no such file or directory."),
     ],
 )
 def test_a_wrong_name_is_refused_before_anything_slow_is_imported(

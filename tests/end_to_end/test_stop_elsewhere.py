@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import signal
 import subprocess
 import sys
 from collections.abc import Callable
@@ -83,21 +82,3 @@ def test_a_fault_is_cleared_without_a_restart(start_bench: Start, tmp_path: Path
 
 def breaks(bench: BenchProcess) -> None:
     bench.command("pot follower 2 open")
-
-
-def test_a_host_that_stood_still_is_told_of_the_lease(start_bench: Start, tmp_path: Path) -> None:
-    """A laptop that slept, Ctrl-Z in the terminal: the board is well, and stopped the motors by itself."""
-    bench = start_bench()
-    log = tmp_path / "log.csv"
-    arguments = ("record", "--enable", "--seconds", "3600", "--out", str(log), "--port", bench.port)
-    with greywhale(*arguments) as host:
-        while not bench.command("status")["motors_enabled"]:
-            assert host.poll() is None, host.communicate()
-        host.send_signal(signal.SIGSTOP)
-        bench.command("speed 1")  # which waits for no host
-        while bench.command("status")["motors_enabled"]:
-            pass
-        host.send_signal(signal.SIGCONT)
-        _, said = host.communicate()
-    assert host.returncode == 1
-    assert "did not renew the lease of 500 ms: was it stopped or asleep?" in said
