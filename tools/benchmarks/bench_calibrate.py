@@ -22,7 +22,7 @@ from greywhale.files.arm import default_arm
 from greywhale.files.leader import save_leader
 from greywhale.motion import evaluate, human_reaches
 from greywhale_sim.faults import BY_NAME, FAULTS, WHERE
-from tools.benchmarks.figure import Figure
+from tools.benchmarks.figure import Figure, at_most
 from tools.benchmarks.study import repeat
 from tools.support.hands import SECOND_DEG, Hands, bench_of, mounted_anyhow, run_calibrate
 
@@ -85,7 +85,7 @@ def run() -> list[Figure]:
     named = [sum(found[task.key] for task in of_fault) for of_fault in tries]
     apart = float(np.abs(ratios - 1.0).max())
     return [
-        Figure("error of 20 assemblies / calibrated bench, farthest from 1", apart, "", f"<= {LIKE}", apart <= LIKE),
+        at_most("error of 20 assemblies / calibrated bench, farthest from 1", apart, "", LIKE),
         *(
             Figure(f"{fault.name}: named in so many assemblies", count, "", f"{ASSEMBLIES}", count == ASSEMBLIES)
             for fault, count in zip(FAULTS, named, strict=True)

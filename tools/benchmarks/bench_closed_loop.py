@@ -24,7 +24,7 @@ from greywhale.files.arm import default_arm
 from greywhale.motion import human_reaches
 from greywhale.simulate import Experiment, default_controller, plant_row
 from tools import ROOT
-from tools.benchmarks.figure import Figure
+from tools.benchmarks.figure import Figure, at_least
 
 CANDIDATES = 512
 SECONDS = 12.0
@@ -55,7 +55,7 @@ def run() -> list[Figure]:
     quiet = Experiment(human_reaches(1, SECONDS), arm, noise=False)
     exact_quiet = simulated / _best(quiet.run_exact, time.process_time)
     figures = [
-        Figure("closed loop, one candidate, no sensor noise", exact_quiet, "x real", ">= 1,000", exact_quiet >= 1000),
+        at_least("closed loop, one candidate, no sensor noise", exact_quiet, "x real", 1000),
         Figure("closed loop, one candidate, sensor noise", exact, "x real"),
     ]
     batch = {}
@@ -67,7 +67,7 @@ def run() -> list[Figure]:
         batch[steps] = CANDIDATES * simulated / _best(one_thread, time.process_time)
         figures.append(Figure(f"closed loop, batch, {steps} steps a tick", batch[steps], "x real"))
     reach = max(batch.values())
-    figures.append(Figure("closed loop, batch, fastest", reach, "x real", ">= 40,000", reach >= 40_000))
+    figures.append(at_least("closed loop, batch, fastest", reach, "x real", 40_000))
 
     def threads(count: int) -> Callable[[], object]:
         return lambda: experiment.run(controllers, plants, steps_per_tick=1, threads=count)
@@ -109,7 +109,7 @@ def _mujoco(ours: float) -> list[Figure]:
         Figure("MuJoCo from C++, implicitfast, no dry friction", free, "x real"),
         Figure("MuJoCo from C++, implicitfast, dry friction", dry, "x real"),
         Figure("MuJoCo from C++, two threads, no dry friction", two, "x real"),
-        Figure("batch against MuJoCo without friction", ours / best, "x", ">= 20", ours / best >= 20),
+        at_least("batch against MuJoCo without friction", ours / best, "x", 20),
         *_mujoco_rollout(),
     ]
 
@@ -156,5 +156,5 @@ def _numba(ours: float, plants: np.ndarray, experiment: Experiment) -> list[Figu
     rate = len(some) * experiment.ticks * 1e-3 / taken
     return [
         Figure("numba, fastmath, no backlash, float controller", rate, "x real"),
-        Figure("batch against numba", ours / rate, "x", ">= 4", ours / rate >= 4),
+        at_least("batch against numba", ours / rate, "x", 4),
     ]

@@ -16,7 +16,7 @@ import numpy as np
 
 from greywhale.base.study import Task
 from greywhale.commission.judge import MOST_UNREST
-from tools.benchmarks.figure import Figure
+from tools.benchmarks.figure import Figure, at_most
 from tools.benchmarks.study import repeat
 from tools.benchmarks.tuning import motions
 from tools.support.foreign_arm import Run, commissioned
@@ -41,10 +41,7 @@ def run() -> list[Figure]:
         before, after = Run(**facts["before"]), Run(**facts["after"])
         figures += judged(head, before, after, facts["wall_s"])
         reaches.append(float(after.error["human reaches"].sum() / before.error["human reaches"].sum()))
-    median = float(np.median(reaches))
-    holds = median <= HUMAN_SHARE
-    figures.append(Figure("foreign arms, human reaches: median", median, "x", f"<= {HUMAN_SHARE}", holds))
-    return figures
+    return [*figures, at_most("foreign arms, human reaches: median", float(np.median(reaches)), "x", HUMAN_SHARE)]
 
 
 def judged(head: str, before: Run, after: Run, wall_s: float) -> list[Figure]:
@@ -58,7 +55,7 @@ def judged(head: str, before: Run, after: Run, wall_s: float) -> list[Figure]:
         more = 1e3 * float((np.sqrt(after.error[name]) - np.sqrt(was)).max())
         figures += [
             Figure(f"{head}, {name}: MSE after / before", total, "x"),
-            Figure(f"{head}, {name}: worst joint", worst, "x", "<= 1", worst <= 1.0),
+            at_most(f"{head}, {name}: worst joint", worst, "x", 1.0),
             Figure(f"{head}, {name}: most that a joint's error grew", more, "mrad rms"),
         ]
     rests, rested = after.unrest["multi-steps"], before.unrest["multi-steps"]
@@ -67,5 +64,5 @@ def judged(head: str, before: Run, after: Run, wall_s: float) -> list[Figure]:
         *figures,
         Figure(f"{head}: most unrest at rest", 1e3 * float(rests.max()), "mrad rms"),
         Figure(f"{head}: joints that hunt at rest", hunting, "", "0", hunting == 0),
-        Figure(f"{head}: wall time", wall_s, "s", f"<= {WALL_S:g}", wall_s <= WALL_S),
+        at_most(f"{head}: wall time", wall_s, "s", WALL_S),
     ]

@@ -32,7 +32,7 @@ from greywhale.simulate import Experiment, default_controller
 from greywhale.tune import tune
 from greywhale.tune.model import load_model
 from greywhale.tune.search.space import largest_ki
-from tools.benchmarks.figure import Figure
+from tools.benchmarks.figure import Figure, at_least
 from tools.benchmarks.study import repeat, threads
 from tools.support.recordings import random_arm, readings_of
 
@@ -119,7 +119,7 @@ def run() -> list[Figure]:
         alike = float(spearmanr(score, error).statistic)
         chosen, best = float(error[score.argmin()]), float(error.min())
         figures += [
-            Figure(f"{head}: rank correlation of check and led reaches", alike, "", f">= {ALIKE}", alike >= ALIKE),
+            at_least(f"{head}: rank correlation of check and led reaches", alike, "", ALIKE),
             Figure(f"{head}: led reaches of the set that the check prefers, after / before", chosen, "x"),
             Figure(f"{head}: the same of the tuned set", float(error[1]), "x"),
             Figure(f"{head}: the same of the best set", best, "x"),

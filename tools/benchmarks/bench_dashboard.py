@@ -21,7 +21,7 @@ from greywhale.base.processes import start
 from greywhale.dashboard.history import MOST_SAMPLES
 from greywhale.protocol import schema
 from greywhale.protocol.frames import FrameDecoder, encode_frame
-from tools.benchmarks.figure import Figure
+from tools.benchmarks.figure import Figure, at_most
 
 SECONDS = MOST_SAMPLES / 1000
 MOST_CPU, MOST_MB, FIRST_S, PREDICTED_S = 0.2, 200.0, 4.0, 0.05
@@ -40,9 +40,7 @@ def run() -> list[Figure]:
             page.samples()
             first_s = time.monotonic() - begun
             return [
-                Figure(
-                    "dashboard, from its start to the first sample", first_s, "s", f"<= {FIRST_S:g}", first_s <= FIRST_S
-                ),
+                at_most("dashboard, from its start to the first sample", first_s, "s", FIRST_S),
                 *_long_look(page, server.pid),
                 *_prediction(page),
             ]
@@ -59,15 +57,7 @@ def _prediction(page: _Page) -> list[Figure]:
     for _ in range(PREDICTIONS):
         page.ask("/predict", raw)
     each_s = (time.monotonic() - begun) / PREDICTIONS
-    return [
-        Figure(
-            "dashboard, a predicted step and reach",
-            1000 * each_s,
-            "ms",
-            f"<= {1000 * PREDICTED_S:g}",
-            each_s <= PREDICTED_S,
-        )
-    ]
+    return [at_most("dashboard, a predicted step and reach", 1000 * each_s, "ms", 1000 * PREDICTED_S)]
 
 
 def _long_look(page: _Page, server: int) -> list[Figure]:
@@ -84,8 +74,8 @@ def _long_look(page: _Page, server: int) -> list[Figure]:
     lost = last - first + 1 - count
     megabytes = memory_kb / 1024
     return [
-        Figure("dashboard, server, share of a core, every tick", share, "", f"<= {MOST_CPU:g}", share <= MOST_CPU),
-        Figure("dashboard, server, ten minutes of history", megabytes, "MB", f"<= {MOST_MB:g}", megabytes <= MOST_MB),
+        at_most("dashboard, server, share of a core, every tick", share, "", MOST_CPU),
+        at_most("dashboard, server, ten minutes of history", megabytes, "MB", MOST_MB),
         Figure("dashboard, samples lost in ten minutes", lost, "", "0", lost == 0),
     ]
 

@@ -16,7 +16,7 @@ from greywhale_sim._board import Board
 from greywhale_sim.programs import load_elf
 from greywhale_sim.symbols import read_symbols
 from tools import ROOT
-from tools.benchmarks.figure import Figure
+from tools.benchmarks.figure import Figure, at_most
 from tools.support.fuzzy_on_board import IMAGES, FuzzyOnBoard
 from tools.support.fuzzy_search import LARGEST, Point, Random, climb
 
@@ -116,7 +116,7 @@ def _planes() -> list[Figure]:
         e = _end(joint.as_tuple()[:4], joint.kp)
         ce = _end(joint.as_tuple()[4:8], joint.kd * 20 / PERIOD_MS)
         worst = _native.fuzzy_worst_difference(joint.native(), PERIOD_MS, (-e, e), (-ce, ce))
-        figures.append(Figure(f"fuzzy: largest error, {name}, whole plane", worst, "LSB q15", "<= 1 LSB", worst <= 1))
+        figures.append(at_most(f"fuzzy: largest error, {name}, whole plane", worst, "LSB q15", 1))
     return figures
 
 
@@ -130,6 +130,4 @@ def _least_exact() -> list[Figure]:
         return abs(float(ours - (1 << 15) * u))
 
     _, errors = climb(error, Random(3), 4_000, 300)
-    return [
-        Figure("fuzzy: largest error found over all parameters", max(errors), "LSB q15", "<= 1 LSB", max(errors) <= 1)
-    ]
+    return [at_most("fuzzy: largest error found over all parameters", max(errors), "LSB q15", 1)]

@@ -23,7 +23,7 @@ from greywhale_sim.assemble import BenchOptions, build_bench
 from greywhale_sim.bench import CLOCK_HZ, SLICE_CYCLES, SLICE_S
 from greywhale_sim.board_with_image import BoardWithImage
 from greywhale_sim.wiring import BOARDS
-from tools.benchmarks.figure import Figure
+from tools.benchmarks.figure import Figure, at_least, at_most
 
 REACH = 20.0
 PIECE_S = 1.0
@@ -37,7 +37,7 @@ def run() -> list[Figure]:
     figures = []
     for board, wiring in BOARDS.items():
         speed = lock_step(board)
-        figures.append(Figure(f"bench, {wiring.title}, one core", speed, "x real", f">= {REACH:g}", speed >= REACH))
+        figures.append(at_least(f"bench, {wiring.title}, one core", speed, "x real", REACH))
     figures.append(Figure("bench, Mega, with a host recording every tick", through_the_port(), "x real"))
     for board in BOARDS:
         figures += board_alone(board)
@@ -95,7 +95,7 @@ def board_alone(name: str) -> list[Figure]:
     fast = factor(reference=False)
     busy = 100 * (1 - board.stats().sleep_cycles / board.cycle)
     return [
-        Figure(f"{name} alone, motors off", fast, "x real", f">= {REACH:g}", fast >= REACH),
+        at_least(f"{name} alone, motors off", fast, "x real", REACH),
         Figure(f"{name} alone, with simavr's own decoder", factor(reference=True), "x real"),
         Figure(f"{name} alone, CPU busy", busy, "%"),
     ]
@@ -111,7 +111,7 @@ def arm_alone() -> list[Figure]:
 
     reused = microseconds(lambda: arm.step(volts, SLICE_S, out))
     return [
-        Figure("arm, one 250 us step from Python", reused, "us", "<= 3 us", reused <= 3),
+        at_most("arm, one 250 us step from Python", reused, "us", 3),
         Figure("arm, one 250 us step inside C++", microseconds(lambda: arm.step(volts, 100 * SLICE_S), 100), "us"),
         Figure("four potentiometers", microseconds(lambda: pots.millivolts(out, out)), "us"),
     ]

@@ -7,7 +7,7 @@ import numpy as np
 from greywhale.protocol import schema
 from greywhale_sim.board_with_image import CYCLES_PER_TICK, UNWATCHED, BoardWithImage, ram_of_a_life
 from greywhale_sim.wiring import BOARDS
-from tools.benchmarks.figure import Figure
+from tools.benchmarks.figure import Figure, at_most
 from tools.support.fuzzy_search import Random
 
 TICKS = 250
@@ -27,7 +27,7 @@ def ticks(name: str) -> list[Figure]:
         alone.append(both[1])
     worst = max(alone)
     return [
-        Figure(f"{name.title()}: tick, worst of {TICKS}", worst, "cycles", "<= 3,200 cycles", worst <= 3200),
+        at_most(f"{name.title()}: tick, worst of {TICKS}", worst, "cycles", 3200),
         Figure(f"{name.title()}: tick, mean", float(np.mean(alone)), "cycles"),
         Figure(f"{name.title()}: tick with its interrupts, worst", max(whole) / 16, "us"),
     ]
@@ -67,7 +67,7 @@ def jitter(name: str) -> Figure:
         bench.board.run_until(first + CYCLES_PER_TICK * i - 150)
         late.append(bench.next_entry() - first - CYCLES_PER_TICK * i)
     spread = (max(late) - min(late)) / 16
-    return Figure(f"{name.title()}: tick jitter", spread, "us", "<= 10 us", spread <= 10)
+    return at_most(f"{name.title()}: tick jitter", spread, "us", 10)
 
 
 def latency(name: str) -> list[Figure]:
@@ -88,13 +88,13 @@ def latency(name: str) -> list[Figure]:
     mean = float(np.mean(delays))
     return [
         Figure(f"{name.title()}: leader pot to duty, mean over the phases of the tick", mean, "ms"),
-        Figure(f"{name.title()}: leader pot to duty, worst phase", max(delays), "ms", "<= 1.3 ms", max(delays) <= 1.3),
+        at_most(f"{name.title()}: leader pot to duty, worst phase", max(delays), "ms", 1.3),
     ]
 
 
 def memory(name: str) -> Figure:
     total = ram_of_a_life(name)
-    return Figure(f"{name.title()}: RAM with the deepest stack", total, "bytes", "<= 1,808 bytes", total <= 1808)
+    return at_most(f"{name.title()}: RAM with the deepest stack", total, "bytes", 1808)
 
 
 def run() -> list[Figure]:

@@ -25,7 +25,7 @@ from greywhale.protocol.table import ParameterTable
 from greywhale.simulate import Experiment, default_controller, plant_row
 from greywhale.tune.judge.floor import saturation_floor
 from greywhale.tune.judge.margins import Margin, Margins
-from tools.benchmarks.figure import Figure
+from tools.benchmarks.figure import Figure, at_most
 from tools.benchmarks.study import repeat
 from tools.benchmarks.tuning import practised
 from tools.support.recordings import random_arm
@@ -104,7 +104,7 @@ def run() -> list[Figure]:
         figures += [
             *(Figure(f"{head}, {name}: MSE after / before", one.ratio(name), "x") for name in MOTIONS),
             Figure(f"{head}, steps: MSE over the floor", multiple, "x"),
-            Figure(f"{head}, multi-steps: worst joint", worst, "x", "<= 1", worst <= 1.0),
+            at_most(f"{head}, multi-steps: worst joint", worst, "x", 1.0),
             Figure(f"{head}: joints cycling after multi-steps", len(one.cycling), "", "0", not one.cycling),
         ]
         for margin in one.failing:
@@ -125,7 +125,5 @@ def run() -> list[Figure]:
     for name in MOTIONS:
         ratios = [one.ratio(name) for one in verdicts]
         figures.append(Figure(f"random arms, {name}: MSE after / before, median", float(np.median(ratios)), "x"))
-        figures.append(
-            Figure(f"random arms, {name}: MSE after / before, worst", max(ratios), "x", "<= 1", max(ratios) <= 1.0)
-        )
+        figures.append(at_most(f"random arms, {name}: MSE after / before, worst", max(ratios), "x", 1.0))
     return figures

@@ -14,3 +14,11 @@ class Figure:
     unit: str
     reach: str = ""
     holds: bool | None = None
+
+
+def at_most(name: str, value: float, unit: str, limit: float) -> Figure:
+    return Figure(name, value, unit, f"<= {limit:,g}", value <= limit)
+
+
+def at_least(name: str, value: float, unit: str, limit: float) -> Figure:
+    return Figure(name, value, unit, f">= {limit:,g}", value >= limit)

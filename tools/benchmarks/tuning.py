@@ -21,7 +21,7 @@ from greywhale.identify.excite import design
 from greywhale.motion import Evaluation, human_reaches, multi_steps, steps
 from greywhale.protocol.table import ParameterTable
 from greywhale.tune.judge.floor import saturation_floor
-from tools.benchmarks.figure import Figure
+from tools.benchmarks.figure import Figure, at_most
 from tools.support.recordings import record
 
 # A folder of leader recordings (CSV: time_s, leader_0..3) to be judged on as well.
@@ -121,12 +121,10 @@ def figures(where: str, judged: Mapping[str, Judged]) -> list[Figure]:
         found.append(Figure(f"{head}: total MSE after", one.after.total_mse, "rad2"))
         found += _reached(head, name, one)
         worst = float(one.mse_ratios().max())
-        found.append(Figure(f"{head}: MSE of the worst joint, after / before", worst, "x", "<= 1", worst <= 1.0))
+        found.append(at_most(f"{head}: MSE of the worst joint, after / before", worst, "x", 1.0))
         steady = one.steady()
         if steady is not None:
-            found.append(
-                Figure(f"{head}: largest steady-state error", steady, "rad", f"<= {STEADY_RAD}", steady <= STEADY_RAD)
-            )
+            found.append(at_most(f"{head}: largest steady-state error", steady, "rad", STEADY_RAD))
         for which, means in (("delay_s", "delay"), ("onset_delay_s", "onset delay")):
             later = one.later(which)
             if later is not None:
