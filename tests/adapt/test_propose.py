@@ -10,11 +10,12 @@ import pytest
 
 from greywhale.adapt import propose as propose_module
 from greywhale.adapt.decide import Adaptation
-from greywhale.adapt.propose import EVERY, NEWEST, Task, motion_of, propose
+from greywhale.adapt.propose import EVERY, FASTER, NEWEST, Task, motion_of, propose
 from greywhale.arm.parameters import Tip
 from greywhale.base.types import Controllers
 from greywhale.files.arm import default_arm
 from greywhale.files.trajectory import Trajectory
+from greywhale.protocol.firmware import TICK_S
 from greywhale.simulate.controllers import controllers_of
 from greywhale.tune.model import Model
 from tests.adapt.conftest import TABLE
@@ -96,8 +97,12 @@ def test_what_was_seen_before_a_load_was_taken_up_is_left_out(
     assert proposal.scale.factor == pytest.approx([1.0] * 4, abs=0.4)
 
 
-def test_it_trains_on_the_longest_stretches_of_this_person(task: Task) -> None:
+def test_it_trains_on_the_longest_stretches_of_this_person_and_on_their_way_back_faster(task: Task) -> None:
     motion: Trajectory = motion_of(task.recent)
-    assert motion.duration_s == pytest.approx(NEWEST, abs=0.01)
-    last = task.recent[-1].leader
-    np.testing.assert_allclose(motion.angles[-1], last[-EVERY:].mean(axis=0))
+    assert motion.duration_s == pytest.approx(NEWEST * (1.0 + 1.0 / FASTER), abs=0.02)
+    there, back = np.split(motion.angles, [round(NEWEST / TICK_S) // EVERY])
+    np.testing.assert_allclose(there[-1], task.recent[-1].leader[-EVERY:].mean(axis=0))
+    np.testing.assert_allclose(
+        np.abs(np.diff(motion.angles, axis=0)).max(), FASTER * np.abs(np.diff(there, axis=0)).max(), rtol=0.1
+    )
+    np.testing.assert_allclose(back[1::2], there[-4::-3][: len(back[1::2])])

@@ -26,6 +26,9 @@ from greywhale.tune.model import Model
 # The newest stretches: the model is fitted to them, and the motion of those without a gap is trained on, with a row
 # every so many ticks.
 NEWEST, EVERY = 24, 5
+# The person may move faster than in these seconds, and a set that never needed more could have too little voltage then:
+# the search trains on the way back as well, at so many times the speed.
+FASTER = 1.5
 # Older stretches count for the comparison, so many at a time, while the model explains each joint's error in them as
 # well as in the newest, up to this factor (a logarithm): then it is the same arm.
 BLOCK, SAME_ARM = 8, 0.4
@@ -116,8 +119,13 @@ def _ratio(scale: Scale, errors: Floats, before: Floats) -> float:
 
 
 def motion_of(stretches: Sequence[Stretch]) -> Trajectory:
-    """What the person did in the longest part without a gap, from rest; readings' noise is averaged."""
+    """What the person did in the longest part without a gap, from rest, and the same backwards and FASTER; readings'
+    noise is averaged.
+    """
     chain = max(chains_of(stretches), key=len)[-NEWEST:]
     leader = traces_of(chain).leader
     angles: Floats = leader.reshape(len(chain) * ROWS // EVERY, EVERY, JOINTS).mean(axis=1)
+    rows = np.arange(len(angles), dtype=np.float64)
+    back = np.arange(rows[-1] - FASTER, 0.0, -FASTER)
+    angles = np.vstack([angles, np.transpose([np.interp(back, rows, joint) for joint in angles.T])])
     return Trajectory(EVERY * TICK_S * np.arange(len(angles), dtype=np.float64), angles)
