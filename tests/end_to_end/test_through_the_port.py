@@ -98,7 +98,7 @@ def test_the_bench_ends_with_its_parent_and_leaves_no_link(start_bench: Start, t
         (("--leader", "nowhere.csv"), "nowhere.csv: cannot be read"),
         (("--arm", "nowhere.toml"), "nowhere.toml"),
         (("--firmware", "nowhere.hex"), "nowhere.hex"),
-        (("--firmware", "pyproject.toml"), "pyproject.toml, line 1: a record must begin with a colon"),
+        (("--firmware", "pyproject.toml"), "pyproject.toml, line 1: this is no Intel HEX record"),
         (("--eeprom", "/proc/version"), "/proc/version: cannot be written"),
         (("--speed", "7"), "invalid choice"),
     ],
