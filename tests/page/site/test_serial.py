@@ -29,6 +29,14 @@ from tests.page.site.serve_folder import Site
 pytestmark = pytest.mark.slow
 
 HIDE = 'Object.defineProperty(document, "visibilityState", { get: () => "hidden", configurable: true })'
+WATCH_REQUESTS = """() => {
+  const ask = fetch;
+  portOpenAtRequest = [];
+  fetch = (file) => {
+    if (String(file).endsWith(".hex")) portOpenAtRequest.push(navigator.serial.granted[0].readable !== null);
+    return ask(file);
+  };
+}"""
 DEFAULTS = ParameterTable.defaults()
 SHOW = "delete document.visibilityState"
 
@@ -194,6 +202,7 @@ def test_a_board_of_another_program_is_flashed_and_the_other_boards_image_refuse
     before.write_text(full_of_zeros(len(image)))  # what was not erased stays zero
     words = ("--board", board, "--firmware", str(before))
     with lock_step(*words) as bench, connected(context, site, bench) as (page, _):
+        page.evaluate(WATCH_REQUESTS)
         page.get_by_label("A HEX file in its place").set_input_files(parts / f"{other}.hex")
         press(page, "Flash")
         expect(page.get_by_role("alert")).to_contain_text(f"but the board on this port is an Arduino {title}; choose")
@@ -203,3 +212,4 @@ def test_a_board_of_another_program_is_flashed_and_the_other_boards_image_refuse
         expect(page.get_by_role("main")).to_contain_text(f"The Arduino {title} holds what was written; firmware")
         expect(page.locator(".pill")).to_have_text("disabled")
         assert bench.server.board.flash()[: len(image)] == image
+        assert page.evaluate("portOpenAtRequest") == [False, False]  # a bootloader does not wait for a slow network

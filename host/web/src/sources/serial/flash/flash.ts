@@ -14,12 +14,12 @@ const ATTEMPTS = 3;
 export async function flash(
   port: SerialPort, file: NamedText | null, firmware: (board: string) => Promise<NamedText>, report: Report,
 ): Promise<string> {
-  const named = file && readImage(file); // nothing is touched for a broken file
+  const images = await readImages(file, firmware);
   report("looking for the bootloader", 0);
   const { talk, bootloader } = await findBootloader(port);
   try {
     const board = await boardOf(bootloader);
-    const image = named ?? readImage(await firmware(board.name));
+    const image = images.get(board)!;
     checkImage(image, board);
     await writeImage(bootloader, image, board, report);
     await verify(bootloader, image, board, report);
@@ -28,6 +28,14 @@ export async function flash(
   } finally {
     await talk.close();
   }
+}
+
+/** What each board would get, read before a port is opened: a bootloader waits for a second, and a network may be slower. */
+async function readImages(
+  file: NamedText | null, firmware: (board: string) => Promise<NamedText>,
+): Promise<ReadonlyMap<Target, Image>> {
+  const chosen = file && readImage(file);
+  return new Map(await Promise.all(TARGETS.map(async (board) => [board, chosen ?? readImage(await firmware(board.name))] as const)));
 }
 
 async function findBootloader(port: SerialPort): Promise<{ talk: Talk; bootloader: Bootloader }> {
