@@ -38,6 +38,7 @@ def test_what_is_broken_on_the_page_is_broken_on_the_bench(page: Page, stage: St
     expect(page.get_by_role("alert").first).to_contain_text("leader potentiometer 2")
     page.get_by_role("button", name="Mend all").click()
     expect(page.locator(".differences li")).to_have_count(0)
+    stage.live(0.1)  # until the board sees it as well, and enables again
     page.get_by_label("Supply, V").fill("9")
     page.get_by_label("Supply, V").dispatch_event("change")
     page.get_by_role("button", name="Enable").click()
