@@ -133,6 +133,8 @@ def _simulate(log: Prepared, loop: Loop, plant: Floats, zero: Floats, seed: int)
 
 def read_motion(shown: Floats, noise: Floats, shift: int, random: np.random.Generator) -> Floats:
     """What the firmware makes of what potentiometers show at every tick, (ticks, 4) rad: four conversions, a filter."""
+    from scipy.signal import lfilter  # slow to import
+
     before = np.vstack([shown[:1], shown[:-1]])
     step = USUAL_TRACK_RAD / COUNTS
     mean = np.zeros_like(shown)
@@ -140,9 +142,6 @@ def read_motion(shown: Floats, noise: Floats, shift: int, random: np.random.Gene
         seen = before + moment * (shown - before) + noise * random.standard_normal(shown.shape)
         mean += (np.floor(seen / step) + 0.5) * step / len(MOMENTS)
     share = 1.0 / (1 << shift)
-    filtered = np.empty_like(mean)
-    state = mean[0]
-    for tick in range(len(mean)):
-        state = state + share * (mean[tick] - state)
-        filtered[tick] = state
-    return np.round(filtered / ANGLE_LSB) * ANGLE_LSB
+    filtered, _ = lfilter([share], [1.0, share - 1.0], mean, axis=0, zi=(1.0 - share) * mean[:1])
+    readings: Floats = np.round(filtered / ANGLE_LSB) * ANGLE_LSB
+    return readings

@@ -239,12 +239,12 @@ def take_off_starts(error: Floats, windows: Windows, log: Prepared, plants: Floa
     count = len(error)
     lag = (plants[:, column("inertia", joint)] / plants[:, column("damping", joint)])[:, None]
     speed = lag * -np.expm1(-windows.time[None, :] / lag)
-    basis = np.stack([np.ones_like(speed), speed], axis=2)  # (n, rows, 2)
+    basis = np.stack([np.ones_like(speed), speed], axis=1)  # (n, 2, rows)
     doubt = np.array([noise, SPEED_DOUBT])
-    normal = np.einsum("nki,nkj->nij", basis, basis) / noise**2 + np.diag(1.0 / doubt**2)
-    right = np.einsum("nki,nwk->niw", basis, error) / noise**2
+    normal = basis @ basis.transpose(0, 2, 1) / noise**2 + np.diag(1.0 / doubt**2)
+    right = basis @ error.transpose(0, 2, 1) / noise**2
     best = np.linalg.solve(normal, right)  # (n, 2, windows)
-    left = (error - np.einsum("nki,niw->nwk", basis, best)) / noise
+    left = (error - best.transpose(0, 2, 1) @ basis) / noise
     return np.concatenate([left.reshape(count, -1), (best / doubt[None, :, None]).reshape(count, -1)], axis=1)
 
 
