@@ -20,7 +20,7 @@ from greywhale.arm.plants import plant_row
 from greywhale.base.errors import UserError
 from greywhale.base.types import show_no_progress
 from greywhale.board.stream import Received
-from greywhale.commission import CommissioningRequest, foresee, learn, run
+from greywhale.commission import CommissioningRequest, foresee, learn, on_model, run
 from greywhale.commission.arm_on_port import PlayedMotion
 from greywhale.commission.hunting_stop import Hunting, HuntingStop
 from greywhale.commission.journal import CommissioningJournal
@@ -102,7 +102,9 @@ def options_in(folder: Path) -> Callable[..., CommissioningRequest]:
 
 
 def in_no_time(rig: SimulatedRig, patch: pytest.MonkeyPatch) -> None:
-    """No board; controllers are found at once, twice as stiff, and too stiff for joint 2; few steps are foreseen."""
+    """No board; controllers are found at once, twice as stiff, and too stiff for joint 2; few steps are foreseen; the
+    model is only asked about steps of the search.
+    """
 
     def find(
         book: CommissioningJournal, name: str, model: Model, start: np.ndarray, **options: object
@@ -116,6 +118,7 @@ def in_no_time(rig: SimulatedRig, patch: pytest.MonkeyPatch) -> None:
 
     patch.setattr(run, "connected", rig.connected)
     patch.setattr(learn, "find_controllers", find)
+    patch.setattr(on_model, "PACKS", ())
     steps = multi_steps()
     few = Trajectory(steps.time_s[steps.time_s < 4.0], steps.angles[steps.time_s < 4.0])
     patch.setattr(foresee, "multi_steps", lambda: few)

@@ -1,7 +1,6 @@
 """The motions of a commissioning: a little first one, and a check in five parts, the small moves first.
 
-Nothing is trained on the check. Each set of controllers is led along the same check, point by point, so that errors
-compare.
+No tuning knows the check. Each set of controllers is led along the same one, point by point, so that errors compare.
 """
 
 from __future__ import annotations

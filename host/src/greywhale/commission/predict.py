@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from greywhale.arm import ArmParameters
 from greywhale.arm.parameters import with_usual_noise
 from greywhale.arm.plants import plant_row
-from greywhale.base.types import Floats
+from greywhale.base.types import Controllers, Floats
 from greywhale.commission.measures import Traces
 from greywhale.protocol.firmware import JOINTS, TICK_S, pwm_steps
 from greywhale.protocol.joints import unused
@@ -20,33 +22,43 @@ LEAD_TICKS = 500
 SEED = 5
 
 
-def predict(arm: ArmParameters, table: ParameterTable, played: Traces, plants: Floats | None = None) -> list[Traces]:
-    """The traces that the model (or each of other plants) would have made under the leader of a log."""
-    rows = plant_row(arm)[None] if plants is None else plants
-    noisy = with_usual_noise(arm)
-    zero = np.array([pot.centre for pot in noisy.follower_pots.joint])
-    zero[list(unused(arm.joints_in_use))] = 0.0
-    reference = np.vstack([np.tile(played.leader[:1], (LEAD_TICKS, 1)), played.leader])
-    stops = [(joint.stops.min, joint.stops.max) for joint in arm.joint]
-    home = [float(np.clip(angle, *stops[joint])) for joint, angle in enumerate(played.follower[0] + zero)]
-    loop = ClosedLoop(
-        with_ideal_follower(table),
-        known_readings(reference, reference + zero),
-        noisy.follower_pots,
-        seed=SEED,
-        home=home,
-        gap=[0.0] * JOINTS,
-        weight_s=np.zeros(len(reference)),
-    )
-    found = loop.run(controllers_of(table)[None], np.ascontiguousarray(rows), substeps=2, every=1)
-    shown = shown_angles(found.angles, np.ascontiguousarray(rows), TICK_S)
-    volts = table.supply_v / np.array(pwm_steps(table.board))
-    return [
-        Traces(
-            leader=played.leader,
-            follower=np.nan_to_num(angles[LEAD_TICKS:], nan=10.0) - zero,
-            voltage=duties[LEAD_TICKS:].astype(np.float64) * volts,
-            begins=played.begins,
+class LedModel:
+    """A model in the arm's place, under the leader of a log; `table` is the board's."""
+
+    def __init__(self, arm: ArmParameters, table: ParameterTable, played: Traces) -> None:
+        noisy = with_usual_noise(arm)
+        zero = np.array([pot.centre for pot in noisy.follower_pots.joint])
+        zero[list(unused(arm.joints_in_use))] = 0.0
+        reference = np.vstack([np.tile(played.leader[:1], (LEAD_TICKS, 1)), played.leader])
+        stops = [(joint.stops.min, joint.stops.max) for joint in arm.joint]
+        home = [float(np.clip(angle, *stops[joint])) for joint, angle in enumerate(played.follower[0] + zero)]
+        self._loop = ClosedLoop(
+            with_ideal_follower(table),
+            known_readings(reference, reference + zero),
+            noisy.follower_pots,
+            seed=SEED,
+            home=home,
+            gap=[0.0] * JOINTS,
+            weight_s=np.zeros(len(reference)),
         )
-        for angles, duties in zip(shown, found.duties, strict=True)
-    ]
+        self._zero, self._played = zero, played
+        self._volts = table.supply_v / np.array(pwm_steps(table.board))
+
+    def run(self, controllers: Controllers, plants: Floats) -> Iterator[Traces]:
+        """The traces of controllers (n, 4, 13) on plants (n, columns), one of either for all."""
+        found = self._loop.run(np.ascontiguousarray(controllers), np.ascontiguousarray(plants), substeps=2, every=1)
+        each = np.ascontiguousarray(np.broadcast_to(plants, (len(found.angles), plants.shape[1])))
+        for number, duties in enumerate(found.duties):
+            (angles,) = shown_angles(found.angles[[number]], each[[number]], TICK_S)
+            yield Traces(
+                leader=self._played.leader,
+                follower=np.nan_to_num(angles[LEAD_TICKS:], nan=10.0) - self._zero,
+                voltage=duties[LEAD_TICKS:].astype(np.float64) * self._volts,
+                begins=self._played.begins,
+            )
+
+
+def predict(arm: ArmParameters, table: ParameterTable, played: Traces, plants: Floats | None = None) -> list[Traces]:
+    """The traces that the model (or each of other plants) would have made with the table's controllers."""
+    rows = plant_row(arm)[None] if plants is None else plants
+    return list(LedModel(arm, table, played).run(controllers_of(table)[None], rows))

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
+from dataclasses import replace
 
 import numpy as np
 import numpy.typing as npt
@@ -21,6 +22,7 @@ from greywhale.commission.evidence import failing_plants, gather
 from greywhale.commission.foresee import foresee
 from greywhale.commission.journal import CommissioningJournal
 from greywhale.commission.motions import JointRange, check_motion
+from greywhale.commission.on_model import CheckOnModel
 from greywhale.commission.request import CommissioningRequest
 from greywhale.commission.result import CommissioningResult, Round, errors_beside, predict_trial
 from greywhale.commission.search import MOST_SOFTER, JointSearch, Row
@@ -82,7 +84,6 @@ class _Commissioning:
         for number in range(1, self.options.rounds + 1):
             learnt = self._learn(number)
             first = len(trials.done)
-            trials.others |= learnt.others
             with self._arm(f"round {number}") as arm:
                 self._try(arm, learnt)
             self.rounds.append(Round(number, learnt, tuple(trials.done[first:])))
@@ -135,10 +136,10 @@ class _Commissioning:
             path = learn.find_model(book, f"model-{number}", self.nominal, known, options.seed, report, begin)
         model = learn.read_model(path, options.seed, book.path("before.toml"))
         trials = self.trials
-        trials.foresight = foresee(
+        trials.foresight = foresight = foresee(
             model.arm, trials.table, self.room, trials.check, trials.before.traces, trials.before.measured
         )
-        return learn.find_controllers(
+        learnt = learn.find_controllers(
             book,
             f"controller-{number}",
             learn.with_failures(model, failing_plants(model.arm, self.trials)),
@@ -148,6 +149,19 @@ class _Commissioning:
             threads=options.threads,
             report=report,
         )
+        trials.others |= learnt.others
+        self.on_model = CheckOnModel.of(model, trials, foresight, options.seed, options.threads)
+        return replace(learnt, controllers=self._search_on_model(number, learnt.controllers))
+
+    def _search_on_model(self, number: int, tuned: Controllers) -> Controllers:
+        """Controllers around the tuned ones that the round's model prefers on the check."""
+        name = f"on-model-{number}"
+        facts = self.book.get(name)
+        if facts is None:
+            found = self.on_model.search(tuned, self.options.seed, self._report(f"round {number}"))
+            facts = {"controllers": found.tolist()}
+            self.book.note(name, facts)
+        return np.array(facts["controllers"], dtype=np.int32)
 
     def _excite(self) -> Log:
         """The log of the motion that shows most about the arm."""
@@ -197,12 +211,18 @@ class _Commissioning:
         self.trying = ""
 
     def _promises(self, joint: int) -> Callable[[Row], bool]:
-        """Whether the model has nothing against a joint's controller, beside the best of the others."""
+        """Whether the model has nothing against a joint's controller, beside the best of the others. After a trial that
+        passed it must also expect less cost; what it got wrong, only the arm can tell.
+        """
 
         def promises(row: Row) -> bool:
-            rows = self._best_rows()
+            best = self._best_rows()
+            rows = best.copy()
             rows[joint] = row
-            return self.trials.foresight is None or not self.trials.foresight.clauses(rows)[joint]
+            if self.trials.foresight is not None and self.trials.foresight.clauses(rows)[joint]:
+                return False
+            last = self.searches[joint].tried[-1].verdict
+            return not last.bearable or self.on_model.promises(best, joint, row)
 
         return promises
 

@@ -14,6 +14,7 @@ takes them from here.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 import numpy.typing as npt
@@ -147,12 +148,19 @@ def band_power(angles: Singles | Floats, stride: int, length: int, sections: Flo
 
 def rattle_of_record(leader: Floats, follower: Floats) -> Floats:
     """The rattle (4,) in rad, rms, of a record (rows, 4) in which a hand leads: nothing in it is quick."""
-    from scipy.signal import butter, sosfiltfilt  # slow to import
+    from scipy.signal import sosfiltfilt  # slow to import
 
-    band = butter(4, RATTLE_BAND_HZ, btype="bandpass", fs=1.0 / TICK_S, output="sos")
-    powers = [np.mean(sosfiltfilt(band, angles, axis=0) ** 2, axis=0) for angles in (follower, leader)]
+    powers = [np.mean(sosfiltfilt(_rattle_band(), angles, axis=0) ** 2, axis=0) for angles in (follower, leader)]
     beyond: Floats = np.sqrt(np.maximum(powers[0] - powers[1], 0.0))
     return beyond
+
+
+@cache
+def _rattle_band() -> Floats:
+    from scipy.signal import butter  # slow to import
+
+    band: Floats = butter(4, RATTLE_BAND_HZ, btype="bandpass", fs=1.0 / TICK_S, output="sos")
+    return band
 
 
 # --- chatter ----------------------------------------------------------------------------------------------------------

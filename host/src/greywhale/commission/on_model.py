@@ -1,0 +1,160 @@
+"""The search on a round's model, along the check, before the arm moves.
+
+The tuning does not know the check and its limits; this search does, and its trials cost no time of the arm. It varies
+the scaling factors of the tuned controllers by the tuning's own optimiser. A joint costs the root of its error in what
+a hand leads, as a share of that before, and more
+
+- beyond a share of what the check allows, and where it hunts on a worse arm: the loosest gears that the recordings
+  allow, more loop gain, slower potentiometers;
+- where it would follow steps hardly better than before, if the model knows the joint's steps;
+- for the tuning's margins, without twice the loop gain and softer teeth, for which the worse arm stands.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from greywhale.arm.parameters import with_usual_noise
+from greywhale.arm.plants import columns, plant_row
+from greywhale.base.types import Controllers, Floats, NotedProgress
+from greywhale.commission.foresee import Foresight
+from greywhale.commission.judge import LED, Limits
+from greywhale.commission.measures import Measures, measure
+from greywhale.commission.predict import LedModel
+from greywhale.commission.search import Row
+from greywhale.commission.trials import Trials
+from greywhale.motion.swings import QUIET_SHARE
+from greywhale.protocol.firmware import JOINTS
+from greywhale.protocol.joints import unused
+from greywhale.simulate.controllers import controllers_of
+from greywhale.tune.default import METHOD
+from greywhale.tune.judge.margins import AT_REST, TEETH, TWICE, Margins, loosest_plant, penalty, with_gain
+from greywhale.tune.model import Model
+from greywhale.tune.search import lockstep
+from greywhale.tune.search.journal import TuningJournal
+from greywhale.tune.search.lockstep import SearchState
+from greywhale.tune.search.space import Space
+
+# The searches, each around the best so far: the width of the first pack, as a share of the box, and the sets to try.
+PACKS = ((0.1, 96), (0.03, 64))
+# What the worse arm has more of: loop gain, and lag of the potentiometers (s).
+GAIN, LAG_S = 1.3, 1e-3
+# The model is right to within the rest: of the check's limits, and of the error on steps before.
+SURE, SURE_OF_STEPS = 0.8, 0.95
+WORTH = 0.9  # of a joint's error is what a trial on the arm must promise
+PRICE = 2.0  # of being beyond a limit by all of it
+HUNTING = ("unrest",)
+LIMITED = (*HUNTING, "rattle", "chatter", "error")
+NONE_KEPT = np.zeros(JOINTS, dtype=bool)
+LEAST_RAD2 = 1e-9
+
+
+@dataclass(frozen=True)
+class CheckOnModel:
+    """What a model says about controllers, as costs of each joint."""
+
+    arm: LedModel
+    plants: Floats  # (2, columns): the model, and a worse arm
+    trials: Trials
+    foresight: Foresight
+    margins: Margins
+    quiet_v: Floats  # (4,) V rms of ripple at rest
+    limits: Limits  # the arm's; of error the model's
+    led: Floats  # (4,) rad², the model's error before in what a hand leads
+
+    @classmethod
+    def of(cls, model: Model, trials: Trials, foresight: Foresight, seed: int, threads: int) -> CheckOnModel:
+        """For the trials to come, after that of the controllers from before."""
+        arm, table, before = with_usual_noise(model.arm), trials.table.with_raw(trials.others), trials.before
+        plants = np.vstack([plant_row(arm), loosest_plant(model.plants)])
+        margins = Margins(arm, table, plants, threads=threads, searching=True, seed=seed)
+        rows = controllers_of(table)[None]
+        ripple = margins.unrest(rows, exact=True)[AT_REST].ripple[0].max(axis=0)
+        led = LedModel(arm, table, before.traces)
+        (traces,) = led.run(rows, plants[:1])
+        known = measure(traces, trials.check, table.supply_v)
+        limits = Limits.of(before.measured, NONE_KEPT)
+        return cls(
+            arm=led,
+            plants=np.vstack([plants[:1], _worsen(plants[1:])]),
+            trials=trials,
+            foresight=foresight,
+            margins=margins,
+            quiet_v=np.maximum(ripple, QUIET_SHARE * table.supply_v),
+            limits=Limits(limits.unrest, limits.rattle, limits.chatter, Limits.of(known, NONE_KEPT).error),
+            led=known.error[LED].sum(axis=0),
+        )
+
+    def costs(self, controllers: Controllers) -> Floats:
+        """(n, 4) of controllers (n, 4, 13)."""
+        errors, prices = self._judged(controllers)
+        return errors + prices
+
+    def _judged(self, controllers: Controllers) -> tuple[Floats, Floats]:
+        """The error in what a hand leads, rms as a share of that before, and what the rest costs, (n, 4) each."""
+        unrest = self.margins.unrest(controllers)
+        near = {name: found for name, found in unrest.items() if name not in (TWICE, TEETH)}
+        prices = penalty(near, self.quiet_v, ripple_price=0.0)
+        ratios = self.foresight.estimate(controllers)
+        prices += PRICE * np.where(self.foresight.believed, np.maximum(ratios / SURE_OF_STEPS - 1.0, 0.0), 0.0)
+        errors = np.empty_like(prices)
+        known, worse = (list(self._measured(controllers, plant)) for plant in self.plants)
+        for row, (one, other) in enumerate(zip(known, worse, strict=True)):
+            errors[row] = np.sqrt(one.error[LED].sum(axis=0) / np.maximum(self.led, LEAST_RAD2))
+            prices[row] += PRICE * (self._beyond(one, LIMITED) + self._beyond(other, HUNTING))
+        return errors, prices
+
+    def _measured(self, controllers: Controllers, plant: Floats) -> Iterator[Measures]:
+        """What each of controllers (n, 4, 13) would show in the check."""
+        for traces in self.arm.run(controllers, plant[None]):
+            yield measure(traces, self.trials.check, self.trials.table.supply_v)
+
+    def _beyond(self, measured: Measures, names: tuple[str, ...]) -> Floats:
+        """By what share each joint is beyond what the model may show of these measures, together: (4,)."""
+        shares = [np.nan_to_num(getattr(measured, name) / getattr(self.limits, name)) for name in names]
+        beyond: Floats = np.sum([np.maximum(share.max(axis=0) / SURE - 1.0, 0.0) for share in shares], axis=0)
+        return beyond
+
+    def promises(self, controllers: Controllers, joint: int, row: Row) -> bool:
+        """Whether a joint follows so much better with `row` in the place of its own among controllers (4, 13), at less
+        cost, that a trial on the arm is worth its time.
+        """
+        changed = controllers.copy()
+        changed[joint] = row
+        errors, prices = (one[:, joint] for one in self._judged(np.stack([controllers, changed])))
+        return bool(errors[1] < WORTH * errors[0] and errors[1] + prices[1] < errors[0] + prices[0])
+
+    def search(self, begin: Controllers, seed: int, report: NotedProgress) -> Controllers:
+        """The best found around controllers (4, 13)."""
+        table, journal = self.trials.table, TuningJournal(None, {})
+        found = SearchState.nothing(begin)
+        whole = sum(sets for _, sets in PACKS)
+        for number, (sigma, sets) in enumerate(PACKS):
+            lockstep.try_again(self.costs, found, journal, "check")
+            lockstep.search_in_lockstep(
+                Space.default("sf", found.best, table["supply_mv"], table.period_ms),
+                self.costs,
+                found,
+                journal,
+                stage="check",
+                method=METHOD,
+                budget=sets // len(lockstep.TURNS),
+                seed=(seed, number),
+                start=found.best,
+                tick=lambda state: report("searching on the model", min(1.0, state.evaluations / whole)),
+                groups=lockstep.TURNS,
+                sigma=sigma,
+            )
+        idle = list(unused(table.joints_in_use))
+        found.best[idle] = controllers_of(table)[idle]
+        return found.best
+
+
+def _worsen(plant: Floats) -> Floats:
+    """An arm on which a controller comes to rest less easily."""
+    worse = with_gain(plant, GAIN)
+    worse[:, columns("pot_lag")] += LAG_S
+    return worse

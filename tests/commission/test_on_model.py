@@ -1,0 +1,90 @@
+"""The search on the model: the check's limits, steps and margins cost, and what is cheap there does well on the arm."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from greywhale.base.types import show_no_progress
+from greywhale.commission import on_model
+from greywhale.commission.foresee import foresee
+from greywhale.commission.on_model import CheckOnModel
+from greywhale.commission.search import KD, KI, KP
+from greywhale.commission.trials import Trials
+from greywhale.files.arm import default_arm
+from greywhale.simulate.controllers import controllers_of
+from greywhale.tune.judge.margins import with_gain
+from greywhale.tune.model import load_model
+from tests.commission.simulated import ROOM, SimulatedRig
+from tests.tune.models import write_model
+
+pytestmark = pytest.mark.slow
+
+
+@pytest.fixture
+def check(trials: Trials, rig: SimulatedRig, tmp_path: Path) -> CheckOnModel:
+    """With a model that is right."""
+    arm, before = default_arm(), trials.play_before(rig)  # type: ignore[arg-type]
+    foresight = foresee(arm, trials.table, ROOM, trials.check, before.traces, before.measured)
+    model = load_model(write_model(tmp_path / "model.toml"), samples=1, force=True)
+    return CheckOnModel.of(model, trials, foresight, seed=0, threads=1)
+
+
+def varied(check: CheckOnModel, joint: int, factors: dict[int, float]) -> np.ndarray:
+    rows = controllers_of(check.trials.table).copy()
+    for column, factor in factors.items():
+        rows[joint, column] = round(factor * rows[joint, column])
+    return rows
+
+
+def costs_beside(check: CheckOnModel, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The costs (4,) of the controllers from before, and of these."""
+    before, after = check.costs(np.stack([controllers_of(check.trials.table), rows]))
+    return before, after
+
+
+def test_what_the_search_finds_follows_better_on_the_arm(
+    check: CheckOnModel, rig: SimulatedRig, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(on_model, "PACKS", ((0.1, 24),))
+    trials = check.trials
+    found = check.search(controllers_of(trials.table), 0, show_no_progress)
+    trial = trials.play(rig, found)  # type: ignore[arg-type]
+    assert trial.passed
+    assert trial.score < 0.5
+
+
+def test_a_stiffer_joint_that_rests_costs_less_and_is_promised(check: CheckOnModel) -> None:
+    rows = varied(check, 1, {KP: 1.8, KD: 1.45, KI: 1.8})
+    before, after = costs_beside(check, rows)
+    assert after[1] < before[1]
+    start = controllers_of(check.trials.table)
+    assert check.promises(start, 1, rows[1])
+    assert not check.promises(rows, 1, start[1])
+
+
+def test_a_joint_that_hunts_costs_more_and_its_neighbour_hardly(check: CheckOnModel) -> None:
+    before, after = costs_beside(check, varied(check, 3, {KP: 20.0, KD: 0.1}))
+    assert after[3] > 2.0 * before[3]
+    assert after[0] < 1.5 * before[0]
+
+
+def test_a_joint_that_follows_steps_worse_costs_more_where_the_model_knows_them(check: CheckOnModel) -> None:
+    rows = varied(check, 1, {KP: 0.5})
+    unknown = replace(check, foresight=replace(check.foresight, believed=np.zeros(4, dtype=bool)))
+    assert costs_beside(check, rows)[1][1] > costs_beside(unknown, rows)[1][1] + 0.01
+
+
+def test_a_joint_that_hisses_costs_more(check: CheckOnModel) -> None:
+    rows = controllers_of(check.trials.table)
+    quieter = replace(check, quiet_v=0.5 * check.quiet_v)
+    assert (quieter.costs(rows[None]) > check.costs(rows[None])).any()
+
+
+def test_a_joint_that_hunts_on_the_worse_arm_alone_costs_more(check: CheckOnModel) -> None:
+    rows = varied(check, 1, {KP: 1.8, KD: 1.45})
+    worse = np.vstack([check.plants[:1], with_gain(check.plants[1:], 6.0)])
+    assert costs_beside(replace(check, plants=worse), rows)[1][1] > costs_beside(check, rows)[1][1] + 0.1
