@@ -39,7 +39,7 @@ def test_the_demo_tells_its_story_and_proves_its_controllers_on_the_arm(
         monkeypatch.setattr(motions, name, value)
     told: list[str] = []
     out = tmp_path / "new" / "demo"
-    options = DemoOptions(out, arm=arm_with_joints(1, tmp_path), duration_s=4.0, practice_s=10.0, budget=8, prove=True)
+    options = DemoOptions(out, arm=arm_with_joints(1, tmp_path), duration_s=4.0, practice_s=10.0, budget=99, prove=True)
     result = run(options, lambda what, fraction, note="": told.append(what))
     recordings = ["before", "after", "proven", "practice", "check", "check_changed"]
     leaders = ["leader", "rest_leader", "practice_leader", "check_leader", "check_changed_leader"]
@@ -65,9 +65,9 @@ def test_the_demo_tells_its_story_and_proves_its_controllers_on_the_arm(
     assert second.improvement > 0.9
     assert changed.improvement > 0.0  # how well: the benchmark of identify says it of many arms
     was, became, proven = (one.measures for one in result.runs)
-    # So short a search may find little: how much a whole one gains is measured by the benchmarks.
+    # How much a whole search gains is measured by the benchmarks.
     assert proven.total_mse < 1.1 * became.total_mse
-    assert became.total_mse < 1.1 * was.total_mse
+    assert became.total_mse < 0.9 * was.total_mse
     assert_shows_joints(result, 1)
     for word in ("before tuning", "tuned", "proven", "Identified", "all joints", str(result.pictures[0])):
         assert word in result.text()
