@@ -49,7 +49,7 @@ def costs_beside(check: CheckOnModel, rows: np.ndarray) -> tuple[np.ndarray, np.
 def test_what_the_search_finds_follows_better_on_the_arm(
     check: CheckOnModel, rig: SimulatedRig, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(on_model, "PACKS", ((0.1, 24),))
+    monkeypatch.setattr(on_model, "PACKS", ((0.1, 96),))
     trials = check.trials
     found = check.search(controllers_of(trials.table), 0, show_no_progress)
     trial = trials.play(rig, found)  # type: ignore[arg-type]
@@ -82,6 +82,12 @@ def test_a_joint_that_hisses_costs_more(check: CheckOnModel) -> None:
     rows = controllers_of(check.trials.table)
     quieter = replace(check, quiet_v=0.5 * check.quiet_v)
     assert (quieter.costs(rows[None]) > check.costs(rows[None])).any()
+
+
+def test_a_joint_that_overshoots_costs_more(check: CheckOnModel) -> None:
+    rows = controllers_of(check.trials.table)
+    strict = replace(check, overshoot=0.5 * check.overshoot)
+    assert strict.costs(rows[None])[0, 0] > check.costs(rows[None])[0, 0] + 0.5
 
 
 def test_a_joint_that_hunts_on_the_worse_arm_alone_costs_more(check: CheckOnModel) -> None:

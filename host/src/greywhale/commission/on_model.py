@@ -6,7 +6,7 @@ a hand leads, as a share of that before, and more
 
 - beyond a share of what the check allows, and where it hunts on a worse arm: the loosest gears that the recordings
   allow, more loop gain, slower potentiometers;
-- where it would follow steps hardly better than before, if the model knows the joint's steps;
+- where it would follow steps hardly better than before, if the model knows the joint's steps, or overshoot in moves;
 - for the tuning's margins, without twice the loop gain and softer teeth, for which the worse arm stands.
 """
 
@@ -45,6 +45,7 @@ GAIN, LAG_S = 1.3, 1e-3
 # The model is right to within the rest: of the check's limits, and of the error on steps before.
 SURE, SURE_OF_STEPS = 0.8, 0.95
 WORTH = 0.9  # of a joint's error is what a trial on the arm must promise
+OVERSHOOT = 15.0  # % of a step, at most, or as much as before
 PRICE = 2.0  # of being beyond a limit by all of it
 HUNTING = ("unrest",)
 LIMITED = (*HUNTING, "rattle", "chatter", "error")
@@ -64,6 +65,7 @@ class CheckOnModel:
     quiet_v: Floats  # (4,) V rms of ripple at rest
     limits: Limits  # the arm's; of error the model's
     led: Floats  # (4,) rad², the model's error before in what a hand leads
+    overshoot: Floats  # (4,) % of a step, in the check's moves
 
     @classmethod
     def of(cls, model: Model, trials: Trials, foresight: Foresight, seed: int, threads: int) -> CheckOnModel:
@@ -86,6 +88,7 @@ class CheckOnModel:
             quiet_v=np.maximum(ripple, QUIET_SHARE * table.supply_v),
             limits=Limits(limits.unrest, limits.rattle, limits.chatter, Limits.of(known, NONE_KEPT).error),
             led=known.error[LED].sum(axis=0),
+            overshoot=np.fmax(known.worst("overshoot"), OVERSHOOT),
         )
 
     def costs(self, controllers: Controllers) -> Floats:
@@ -105,6 +108,7 @@ class CheckOnModel:
         for row, (one, other) in enumerate(zip(known, worse, strict=True)):
             errors[row] = np.sqrt(one.error[LED].sum(axis=0) / np.maximum(self.led, LEAST_RAD2))
             prices[row] += PRICE * (self._beyond(one, LIMITED) + self._beyond(other, HUNTING))
+            prices[row] += PRICE * np.maximum(np.nan_to_num(one.worst("overshoot")) / self.overshoot - 1.0, 0.0)
         return errors, prices
 
     def _measured(self, controllers: Controllers, plant: Floats) -> Iterator[Measures]:
