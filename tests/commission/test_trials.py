@@ -168,6 +168,28 @@ def test_what_shakes_others_or_ends_the_motion_steps_back_alone(
     assert np.array_equal(best.rows[2], mild[2]) == ends
 
 
+def test_a_joint_that_is_restless_beside_the_others_gets_softer_before_it_falls_back(
+    trials: Trials, rig: SimulatedRig, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    before = play_before(trials, rig)
+    strong = stiffer(trials, [1, 2], BETTER)
+    searches = searches_of(trials)
+    for joint in (1, 2):
+        searches[joint].add(strong[joint], replace(before.verdicts[joint], score=0.2), "alone")
+
+    def play(rig: ArmOnPort | None, rows: np.ndarray) -> Trial:
+        verdicts = [replace(one, score=0.3) for one in before.verdicts]
+        if np.array_equal(rows[1], strong[1]):
+            verdicts[1] = replace(verdicts[1], faults=("it rattles",), restless=True, excess=1.3, bearable=False)
+        trials.done.append(replace(before, rows=rows.copy(), verdicts=tuple(verdicts)))
+        return trials.done[-1]
+
+    monkeypatch.setattr(trials, "play", play)
+    best = confirm(trials, searches, lambda: rig)  # type: ignore[arg-type, return-value]
+    assert np.array_equal(best.rows[2], strong[2])
+    assert before.rows[1, KP] < best.rows[1, KP] < strong[1, KP]
+
+
 def test_where_nothing_passes_what_was_before_is_chosen(trials: Trials, rig: SimulatedRig) -> None:
     before = play_before(trials, rig)
     play(trials, rig, stiffer(trials, [1], WILD))

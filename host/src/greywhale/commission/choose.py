@@ -1,6 +1,7 @@
 """The end of a commissioning: each joint's best, tried together on the arm; where that is worse, joints step back.
 
-First those that fail; where they have nothing else left, those beside them, which shake them.
+First those that fail, after softer ones where they are restless; where they have nothing else left, those beside them,
+which shake them.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ from greywhale.commission.trials import Trial, Trials
 from greywhale.simulate.controllers import controllers_of
 
 MOST_CONFIRMATIONS = 12
+SOFTENED = 2  # so often a joint that is restless beside the others gets a softer controller
 
 
 def confirm(trials: Trials, searches: Sequence[JointSearch], arm: Callable[[], ArmOnPort]) -> Trial:
@@ -32,7 +34,10 @@ def confirm(trials: Trials, searches: Sequence[JointSearch], arm: Callable[[], A
             stepped = rows.copy()
             for joint in np.flatnonzero(back).tolist():
                 failed[joint].append(rows[joint].tobytes())
-                stepped[joint] = _next(searches[joint], failed[joint], trials)
+                search, verdict, softer = searches[joint], trial.verdicts[joint], None
+                if verdict.restless and len(failed[joint]) <= SOFTENED:
+                    softer = search.soften(rows[joint], verdict, trial.name)
+                stepped[joint] = _next(search, failed[joint], trials) if softer is None else softer
             if not np.array_equal(stepped, rows):
                 rows = stepped
                 break

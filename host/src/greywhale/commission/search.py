@@ -107,6 +107,12 @@ class JointSearch:
                 return row
         return None
 
+    def soften(self, row: Row, verdict: TrialVerdict, trial: str) -> Row | None:
+        """Note that a controller is restless beside the others' best; a softer one, None where nothing changes."""
+        self.add(row, verdict, trial)
+        self._softened = 0
+        return self._soften(self.tried[-1])
+
     def begin(self) -> None:
         """A new controller of a model comes next: if it is restless, it is softened first."""
         self._softened = 0
