@@ -44,8 +44,8 @@ __attribute__((noinline)) int16_t steady_speed(uint16_t mv, uint8_t speed_per_vo
 
 }  // namespace
 
-__attribute__((noinline)) MotionFault Motion::look(uint8_t joint, const JointSeen& seen, const MotionLimits& limits) {
-  Joint& own = joints_[joint];
+// Not inline: from the array's own address on, the code is longer.
+__attribute__((noinline)) MotionFault Motion::look_at(Joint& own, const JointSeen& seen, const MotionLimits& limits) {
   const auto moved = static_cast<int16_t>(static_cast<uint16_t>(seen.follower) - static_cast<uint16_t>(own.last));
   own.last = seen.follower;
   if (own.hold == Hold::unknown) {
@@ -116,7 +116,9 @@ inline void Motion::expect(Joint& joint, const Push& push, const Travel& travel,
   const bool held = joint.hold != Hold::free;
   const int16_t way = follow(joint), before = joint.speed;
   joint.speed = toward_zero(static_cast<int16_t>(before + (way - before) / 4), way == 0);
-  const int16_t change = within(int32_t{joint.speed - before} * travel.time_constant, most_way);
+  const auto turned = static_cast<int16_t>(joint.speed - before);
+  const int16_t change = within(int32_t{turned + thrown_ / 2} * travel.time_constant, most_way);
+  thrown_ = turned;
   auto apart = static_cast<int16_t>(joint.missing + (push.left_mv < 0 ? -push.way : push.way) - way - change);
   if (push.way == 0 && !held)
     apart = toward_zero(apart, static_cast<uint16_t>(steady_speed(push.starts_mv / 2u, travel.speed_per_volt)));

@@ -14,7 +14,8 @@
 //
 // How far a voltage moves a joint: V volts beyond those for gravity and friction give it V x speed_per_volt in the end.
 // What has been given and has not been seen, as a way or as a speed that will still make a way, is missing. A reading
-// comes late, so a joint that is given much may miss a little more before it is held back.
+// comes late, so a joint that is given much may miss a little more before it is held back. A shoulder that speeds up
+// throws the elbow back: by half of its own change, as the inertia of such arms has it (0.2 to 0.6, held straight).
 //
 // A joint that gives way while it is held back carries something that nobody has told of, and a reading that lies by
 // standing still does not do that. What it carries counts as gravity from then on, up to 4 V.
@@ -60,13 +61,16 @@ enum class MotionFault : uint8_t { none, speed, runaway, stalled };
 
 class Motion {
  public:
-  static constexpr uint8_t joint_count = 4;
+  static constexpr uint8_t joint_count = 4, elbow = 2;
 
   void forget() {
     for (Joint& joint : joints_) joint.hold = Hold::unknown;
   }
   // One look at a joint, the next joint in each tick.
-  MotionFault look(uint8_t joint, const JointSeen& seen, const MotionLimits& limits);
+  MotionFault look(uint8_t joint, const JointSeen& seen, const MotionLimits& limits) {
+    if (joint != elbow) thrown_ = 0;
+    return look_at(joints_[joint], seen, limits);
+  }
   Hold hold(uint8_t joint) const { return joints_[joint].hold; }
   int16_t load_mv(uint8_t joint) const { return joints_[joint].load_mv; }
 
@@ -89,14 +93,16 @@ class Motion {
     int16_t way;         // q14 rad, given by this look in the end, in the direction of left_mv
   };
 
+  MotionFault look_at(Joint& own, const JointSeen& seen, const MotionLimits& limits);
   static Push push_of(const JointSeen& seen, const MotionLimits& limits);
   static bool goes_back(Joint& joint, int16_t moved, const Push& push);
   static int16_t follow(Joint& joint);
   static void learn(Joint& joint, const Push& push);
-  static void expect(Joint& joint, const Push& push, const Travel& travel, bool back);
+  void expect(Joint& joint, const Push& push, const Travel& travel, bool back);
   static MotionFault hold(Joint& joint, int16_t given, int16_t error, uint8_t time);
 
   Joint joints_[joint_count] = {};
+  int16_t thrown_ = 0;  // q14 rad a look, by which the joint before has become faster; for the elbow only
 };
 
 }  // namespace supervisor

@@ -173,3 +173,26 @@ TEST_CASE("a joint that gives way while it is pushed carries more than is known,
   sinks.run(0.8, 5, always(0.44), always(-4), -0.01);
   CHECK(sinks.motion.load_mv(2) == 0);
 }
+
+TEST_CASE("an elbow that its shoulder throws back is not held back for that, but beside any other joint it is") {
+  const auto speeds_up = [](double speed, double s, double tau) {
+    return speed * (s - tau * (1 - std::exp(-s / tau)));
+  };
+  for (const int quick : {1, 0, 3}) {
+    Motion motion;
+    bool pushed_gently = false;
+    for (double s = 0; s < 0.5; s += look_s) {
+      for (std::uint8_t joint = 0; joint < 4; ++joint) {
+        const double angle = joint == 2       ? speeds_up(12, std::max(0.0, s - 0.05), 0.1)
+                             : joint == quick ? speeds_up(10, s, 0.03)
+                                              : 0;
+        const auto volts_mv = static_cast<std::int16_t>(joint == 2 ? 15000 : joint == quick ? 12000 : 0);
+        const auto follower = static_cast<std::int16_t>(std::lround(4096 * angle));
+        CHECK(motion.look(joint, {follower, 400, volts_mv, 0}, limits) == MotionFault::none);
+      }
+      pushed_gently = pushed_gently || motion.hold(2) != Hold::free;
+    }
+    CAPTURE(quick);
+    CHECK(pushed_gently == (quick != 1));
+  }
+}
