@@ -212,7 +212,7 @@ class _Commissioning:
 
     def _promises(self, joint: int) -> Callable[[Row], bool]:
         """Whether the model has nothing against a joint's controller, beside the best of the others. After a trial that
-        passed it must also expect less cost; what it got wrong, only the arm can tell.
+        can be borne it must also expect a tenth less error; what a model got wrong, only the arm can tell.
         """
 
         def promises(row: Row) -> bool:
