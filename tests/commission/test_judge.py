@@ -1,4 +1,4 @@
-"""A joint is judged against what it did before: unrest, rattling, chatter and error, each with its own sentence."""
+"""A joint is judged against what it did before: each fault has its own sentence."""
 
 from __future__ import annotations
 
@@ -18,11 +18,13 @@ BEFORE = Measures(
     unrest=np.full(SHAPE, 0.001),
     rattle=np.full(SHAPE, 0.0012),
     chatter=np.full(SHAPE, 3.0),
+    ripple=np.full(SHAPE, 0.2),
     voltage=np.full(SHAPE, 1.0),
     overshoot=np.full(SHAPE, 5.0),
     settling=np.full(SHAPE, 0.3),
 )
 QUIET = ("", "", "", "")
+QUIET_V = 0.45
 
 
 def with_joint(name: str, joint: int, value: float, part: int = 1) -> Measures:
@@ -32,11 +34,11 @@ def with_joint(name: str, joint: int, value: float, part: int = 1) -> Measures:
 
 
 def verdict(measured: Measures, joint: int, kept: np.ndarray = KEPT, guilty: tuple[str, ...] = QUIET) -> TrialVerdict:
-    return judge(measured, BEFORE, Limits.of(BEFORE, kept), guilty)[joint]
+    return judge(measured, BEFORE, Limits.of(BEFORE, kept, QUIET_V), guilty)[joint]
 
 
 def test_what_was_there_before_passes_with_a_score_of_one() -> None:
-    for one in judge(BEFORE, BEFORE, Limits.of(BEFORE, KEPT), QUIET):
+    for one in judge(BEFORE, BEFORE, Limits.of(BEFORE, KEPT, QUIET_V), QUIET):
         assert one.passed
         assert one.score == pytest.approx(1.0)
 
@@ -47,6 +49,7 @@ def test_what_was_there_before_passes_with_a_score_of_one() -> None:
         ("unrest", 0.00149, 0.00151, "hunts at rest"),
         ("rattle", 0.0023, 0.0025, "rattles"),
         ("chatter", 49.0, 51.0, "chatters"),
+        ("ripple", 0.44, 0.46, "hisses at rest"),
         ("error", 1.04e-3, 1.05e-3, "moves worse than before"),
     ],
 )
@@ -63,11 +66,12 @@ def test_each_fault_has_its_limit_and_its_sentence(name: str, passes: float, fai
 
 def test_an_arm_that_was_restless_before_may_stay_as_it_was_but_no_more() -> None:
     restless = replace(BEFORE, unrest=np.full(SHAPE, 0.008))
-    limits = Limits.of(restless, KEPT)
+    limits = Limits.of(restless, KEPT, QUIET_V)
     assert limits.unrest == pytest.approx(np.full(SHAPE, 0.008), rel=0.06)
+    assert Limits.of(replace(BEFORE, ripple=np.full(SHAPE, 2.0)), KEPT, QUIET_V).ripple == pytest.approx(2.2)
     quiet = replace(BEFORE, unrest=np.full(SHAPE, 0.0002))
     holding = PARTS.index("holding still")
-    seen = Limits.of(quiet, KEPT).unrest
+    seen = Limits.of(quiet, KEPT, QUIET_V).unrest
     assert np.delete(seen, holding, axis=0) == pytest.approx(0.0015), "nobody sees so little"
     assert seen[holding] == pytest.approx(0.003), "there its neighbours push it"
 
@@ -80,13 +84,13 @@ def test_a_joint_that_keeps_its_controller_may_feel_its_neighbours() -> None:
     assert verdict(with_joint("error", 3, (seen - 1e-4) ** 2), 3, kept).passed
     assert not verdict(with_joint("error", 3, (seen + 1e-4) ** 2), 3, kept).passed
     far = replace(BEFORE, error=np.full(SHAPE, 1e-2))
-    assert Limits.of(far, kept).error[1, 3] == pytest.approx(1.1e-2, rel=1e-3)
+    assert Limits.of(far, kept, QUIET_V).error[1, 3] == pytest.approx(1.1e-2, rel=1e-3)
 
 
 def test_a_joint_that_keeps_its_controller_may_rest_less_quietly() -> None:
     kept = np.array([False, False, False, True])
     restless = replace(BEFORE, unrest=np.tile([0.001, 0.002, 0.002, 0.002], (len(PARTS), 1)))
-    limits = Limits.of(restless, kept)
+    limits = Limits.of(restless, kept, QUIET_V)
     noise, beyond = 0.001**2, 0.002**2 - 0.001**2
     assert limits.unrest[:-1, 2] == pytest.approx(np.sqrt(noise + 1.5**2 * beyond))
     assert limits.unrest[-1, 2] == pytest.approx(limits.unrest[-1, 3]), "as does one whose neighbours push it"
@@ -96,7 +100,7 @@ def test_a_joint_that_keeps_its_controller_may_rest_less_quietly() -> None:
 def test_a_joint_that_neighbours_push_while_it_holds_still_must_rest_after_its_own_moves() -> None:
     holding, moves = PARTS.index("holding still"), PARTS.index("moves")
     before = with_joint("unrest", 2, 0.0065, holding)
-    limits = Limits.of(before, KEPT)
+    limits = Limits.of(before, KEPT, QUIET_V)
     assert judge(before, before, limits, QUIET)[2].passed
     restless = before.unrest.copy()
     restless[moves, 2] = 0.0023
@@ -106,7 +110,13 @@ def test_a_joint_that_neighbours_push_while_it_holds_still_must_rest_after_its_o
 
 
 @pytest.mark.parametrize(
-    ("name", "little", "much"), [("unrest", 0.00172, 0.00173), ("rattle", 0.00275, 0.00277), ("chatter", 57.0, 58.0)]
+    ("name", "little", "much"),
+    [
+        ("unrest", 0.00172, 0.00173),
+        ("rattle", 0.00275, 0.00277),
+        ("chatter", 57.0, 58.0),
+        ("ripple", 0.517, 0.518),
+    ],
 )
 def test_only_one_kind_of_unrest_and_only_a_little_can_be_borne(name: str, little: float, much: float) -> None:
     assert verdict(BEFORE, 2).bearable

@@ -80,7 +80,7 @@ def test_a_joint_that_follows_steps_worse_costs_more_where_the_model_knows_them(
 
 def test_a_joint_that_hisses_costs_more(check: CheckOnModel) -> None:
     rows = controllers_of(check.trials.table)
-    quieter = replace(check, quiet_v=0.5 * check.quiet_v)
+    quieter = replace(check, ripple=0.5 * check.ripple)
     assert (quieter.costs(rows[None]) > check.costs(rows[None])).any()
 
 

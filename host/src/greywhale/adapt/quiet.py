@@ -1,4 +1,4 @@
-"""Whether a set on trial swings more than the one from before. The limits are those of a commissioning, and of ripple.
+"""Whether a set on trial swings more than the one from before. The limits are those of a commissioning.
 
 A hand trembles, and a good follower follows that: only what it does beyond its leader counts as unrest.
 """
@@ -23,8 +23,6 @@ from greywhale.protocol.firmware import JOINTS
 
 # A hand trembles; its leader rests within this (rad).
 STILL_RAD = 0.02
-# Ripple differs so much from record to record.
-SAME = 1.1
 # Shorter records (in stretches) say little about swings.
 SHORTEST = 4
 
@@ -55,12 +53,12 @@ class Swings:
 
 def find_excess(now: Swings, before: Swings, supply_v: float) -> str:
     """A clause on what is beyond its limit, "" for nothing."""
-    limits = Limits.of(_as_measures(before), np.zeros(JOINTS, dtype=bool))
+    limits = Limits.of(_as_measures(before), np.zeros(JOINTS, dtype=bool), QUIET_SHARE * supply_v)
     allowed = {
         "unrest": (limits.unrest[0], 1e3, "mrad rms at rest"),
         "rattle": (limits.rattle[0], 1e3, "mrad rms of rattling"),
         "chatter": (limits.chatter[0], 1.0, "swings of the voltage a second"),
-        "ripple": (np.maximum(SAME * before.ripple, QUIET_SHARE * supply_v), 1.0, "V rms of ripple"),
+        "ripple": (limits.ripple[0], 1.0, "V rms of ripple"),
     }
     for name, (most, unit, what) in allowed.items():
         shares = np.nan_to_num(getattr(now, name) / most)
@@ -78,5 +76,4 @@ def _beyond(follower: Floats, leader: Floats) -> Floats:
 
 def _as_measures(swings: Swings) -> Measures:
     """A check all of whose parts are alike, as the commissioning's limits take it."""
-    known = {"unrest": swings.unrest, "rattle": swings.rattle, "chatter": swings.chatter}
-    return Measures(**{name: np.tile(known.get(name, np.zeros(JOINTS)), (len(PARTS), 1)) for name in NAMES})
+    return Measures(**{name: np.tile(getattr(swings, name, np.zeros(JOINTS)), (len(PARTS), 1)) for name in NAMES})

@@ -1,4 +1,4 @@
-"""Judges a joint's measures on the arm against those from before: does it hunt, rattle, chatter or follow worse?"""
+"""Judges a joint's measures on the arm by those from before: does it hunt, rattle, chatter, hiss or follow worse?"""
 
 from __future__ import annotations
 
@@ -19,8 +19,9 @@ from greywhale.protocol.firmware import JOINTS
 MOST_UNREST, LEAST_UNREST = 0.005, 0.0015
 MOST_RATTLE, LEAST_RATTLE = 0.005, 0.002
 UNREST_GROWTH, RATTLE_GROWTH = 1.5, 2.0
-# Unrest, rattling and chatter differ from trial to trial, also with the same controllers. Up to so many times its limit
-# one of them can be borne, at a price: such a joint must follow with half the error of one that passes.
+VOLTAGE_GROWTH = 1.1  # of chatter and ripple, which differ by a few per cent with the same controllers
+# Unrest, rattling, chatter and ripple differ from trial to trial, also with the same controllers. Up to so many times
+# its limit one of them can be borne, at a price: such a joint must follow with half the error of one that passes.
 BEARABLE, PRICE = 1.15, 2.0
 # Two recordings with the same controllers may differ by so much: as a share, and in rad² (1 mrad rms). Friction holds a
 # joint now here, now there.
@@ -35,6 +36,7 @@ KEPT_SHARE, KEPT_GROWTH = 0.1, 2.0
 PUSHED, LEAST_PUSHED = PARTS.index(HOLDING), 0.003
 # The parts whose error ranks controllers as a person's reaches do (docs/commission.md). In the others it has a limit.
 LED = [PARTS.index(name) for name in HAND_LED]
+RESTLESS = ("unrest", "rattle", "chatter", "ripple")
 
 
 @dataclass(frozen=True)
@@ -48,11 +50,14 @@ class Limits:
     unrest: Floats
     rattle: Floats
     chatter: Floats
+    ripple: Floats
     error: Floats
 
     @classmethod
-    def of(cls, before: Measures, kept: npt.NDArray[np.bool_]) -> Limits:
-        """What was there before is never too much. `kept` (4,) marks joints whose controllers are those from before."""
+    def of(cls, before: Measures, kept: npt.NDArray[np.bool_], quiet_v: float) -> Limits:
+        """What was there before is never too much, nor is ripple of `quiet_v`. `kept` (4,) marks joints whose
+        controllers are those from before.
+        """
         error = (1.0 + np.where(kept, KEPT_SHARE, SAME_SHARE)) * before.error + SAME_RAD2
         unseen = np.maximum(error, (np.sqrt(before.error) + UNSEEN_RAD) ** 2)
         error = np.where(kept, unseen, error)
@@ -63,7 +68,8 @@ class Limits:
         return cls(
             unrest=_allowed(before.unrest, lambda known: _grow_beyond_noise(known, growth), least, MOST_UNREST),
             rattle=_allowed(before.rattle, lambda known: RATTLE_GROWTH * known, LEAST_RATTLE, MOST_RATTLE),
-            chatter=np.maximum(CHATTER_AT_REST_HZ, 1.1 * np.nan_to_num(before.chatter)),
+            chatter=np.maximum(CHATTER_AT_REST_HZ, VOLTAGE_GROWTH * np.nan_to_num(before.chatter)),
+            ripple=np.maximum(quiet_v, VOLTAGE_GROWTH * np.nan_to_num(before.ripple)),
             error=error,
         )
 
@@ -74,13 +80,13 @@ class TrialVerdict:
 
     joint: int
     faults: tuple[str, ...]
-    restless: bool  # one of the faults is unrest, rattling or chatter
-    chatters_only: bool
-    excess: float  # how many times its unrest, rattling or chatter are what they may be; inf where it ended the trial
+    restless: bool  # one of the faults is unrest, rattling, chatter or ripple
+    chatters_only: bool  # or hisses
+    excess: float  # how many times these are what they may be; inf where it ended the trial
     score: float  # in what a hand leads; NaN where the check was not played to its end, 0 for one not in use
     share: float  # of all joints' error there, with the controllers from before
     known: bool  # whether the joint can be judged: the check was whole, or this joint ended it
-    bearable: bool  # whether it passed, or has no other fault than a little too much unrest, rattling or chatter
+    bearable: bool  # whether it passed, or has no other fault than a little too much of one of these
 
     @property
     def hunts(self) -> bool:
@@ -117,8 +123,8 @@ def _judge(
     measured: Measures, before: Measures, limits: Limits, joint: int, guilty: str, foreseen: str
 ) -> TrialVerdict:
     faults = [guilty] if guilty else []
-    unrest, rattle, chatter = (_closest(measured, limits, name, joint) for name in ("unrest", "rattle", "chatter"))
-    excess = np.inf if guilty else max(0.0, unrest.share, rattle.share, chatter.share)
+    unrest, rattle, chatter, ripple = (_closest(measured, limits, name, joint) for name in RESTLESS)
+    excess = np.inf if guilty else max(0.0, unrest.share, rattle.share, chatter.share, ripple.share)
     if not guilty and unrest.share > 1.0:
         faults.append(f"it hunts at rest ({1e3 * unrest.value:.1f} mrad rms, at most {1e3 * unrest.limit:.1f})")
     if rattle.share > 1.0:
@@ -126,6 +132,8 @@ def _judge(
     quiet = not faults
     if chatter.share > 1.0:
         faults.append(f"its voltage chatters ({chatter.value:.0f} times a second)")
+    if ripple.share > 1.0:
+        faults.append(f"it hisses at rest ({ripple.value:.2f} V rms above 20 Hz, at most {ripple.limit:.2f})")
     restless = bool(faults)
     for place, part in enumerate(PARTS):
         if measured.error[place, joint] > limits.error[place, joint]:

@@ -1,7 +1,8 @@
-"""What a log of the check says about every joint: error, unrest at rest, rattling in motion, chatter, voltage.
+"""What a log of the check says about every joint: error, unrest and ripple at rest, rattling, chatter, voltage.
 
 - error: mean of (leader - follower)², rad²; in the part "holding still" only while the joint's own leader rests.
-- unrest, rattle, chatter: see `motion/swings.py`; rattle only while a hand leads.
+- unrest, rattle, chatter, ripple: see `motion/swings.py`; rattle only while a hand leads, ripple at rest after "moves",
+  where rests are longest.
 - voltage: mean of |u|, V.
 - overshoot and settling: of the part "moves", by `motion/step_response.py`, % and s; no settling where a step never
   settled.
@@ -20,14 +21,21 @@ from greywhale.files.log import Log
 from greywhale.motion import Settings
 from greywhale.motion.runs import resting
 from greywhale.motion.step_response import answer, departures, worst
-from greywhale.motion.swings import REST_AFTER_S, STILL_RAD, chatter_of_record, rattle_of_record, unrest
+from greywhale.motion.swings import (
+    REST_AFTER_S,
+    STILL_RAD,
+    chatter_of_record,
+    rattle_of_record,
+    ripple_at_rest,
+    unrest,
+)
 from greywhale.protocol.firmware import JOINTS, TICK_S
 
 LATEST_BEGIN_S = 8.0  # from the first row of a log to the check: the way to its first pose
 HOLDING = "holding still"
 STEPS = "moves"
 HAND_LED = ("reaches", "slow motion")  # parts in which rattling is measured; the others have edges that no hand makes
-NAMES = ("error", "unrest", "rattle", "chatter", "voltage", "overshoot", "settling")
+NAMES = ("error", "unrest", "rattle", "chatter", "ripple", "voltage", "overshoot", "settling")
 
 
 @dataclass(frozen=True)
@@ -49,6 +57,7 @@ class PartFacts(TypedDict):
     unrest: PerJoint[float | None]  # swings at rest, rad rms
     rattle: PerJoint[float | None]  # swings in motion, rad rms
     chatter: PerJoint[float | None]  # swings of the voltage, 1/s
+    ripple: PerJoint[float | None]  # of the voltage above some 20 Hz, at rest, V rms
     voltage: PerJoint[float | None]  # mean size, V
     overshoot: PerJoint[float | None]  # the largest of the moves, % of the step
     settling: PerJoint[float | None]  # the longest of the moves, s; null where one never settles
@@ -62,6 +71,7 @@ class Measures:
     unrest: Floats
     rattle: Floats
     chatter: Floats
+    ripple: Floats
     voltage: Floats
     overshoot: Floats
     settling: Floats
@@ -90,6 +100,7 @@ class Measures:
                 "unrest": of(self.unrest[place]),
                 "rattle": of(self.rattle[place]),
                 "chatter": of(self.chatter[place]),
+                "ripple": of(self.ripple[place]),
                 "voltage": of(self.voltage[place]),
                 "overshoot": of(self.overshoot[place]),
                 "settling": of(self.settling[place]),
@@ -120,6 +131,7 @@ def measure(traces: Traces, check: Check, supply_v: float) -> Measures:
         found["chatter"][place] = chatter_of_record(voltage, supply_v)
         if name == STEPS:
             found["overshoot"][place], found["settling"][place] = step_answers(leader, follower)
+            found["ripple"][place] = ripple_at_rest(leader, voltage)
         if name in HAND_LED:
             found["rattle"][place] = rattle_of_record(leader, follower)
         else:

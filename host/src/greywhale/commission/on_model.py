@@ -6,14 +6,15 @@ a hand leads, as a share of that before, and more
 
 - beyond a share of what the check allows, and where it hunts on a worse arm: the loosest gears that the recordings
   allow, more loop gain, slower potentiometers;
-- where it would follow steps hardly better than before, if the model knows the joint's steps, or overshoot in moves;
+- where it would follow steps hardly better than before, if the model knows the joint's steps, overshoot in moves, or
+  hiss after them;
 - for the tuning's margins, without twice the loop gain and softer teeth, for which the worse arm stands.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -31,7 +32,7 @@ from greywhale.protocol.firmware import JOINTS
 from greywhale.protocol.joints import unused
 from greywhale.simulate.controllers import controllers_of
 from greywhale.tune.default import METHOD
-from greywhale.tune.judge.margins import AT_REST, TEETH, TWICE, Margins, loosest_plant, penalty, with_gain
+from greywhale.tune.judge.margins import TEETH, TWICE, Margins, loosest_plant, penalty, with_gain
 from greywhale.tune.model import Model
 from greywhale.tune.search import lockstep
 from greywhale.tune.search.journal import TuningJournal
@@ -47,9 +48,11 @@ SURE, SURE_OF_STEPS = 0.8, 0.95
 WORTH = 0.9  # of a joint's error is what a trial on the arm must promise
 OVERSHOOT = 15.0  # % of a step, at most, or as much as before
 PRICE = 2.0  # of being beyond a limit by all of it
+HOST_LED = 0.7  # of the ripple under a leader's hand is there while a host leads, without the leader's noise
 HUNTING = ("unrest",)
 LIMITED = (*HUNTING, "rattle", "chatter", "error")
 NONE_KEPT = np.zeros(JOINTS, dtype=bool)
+NO_LIMIT_V = np.full(JOINTS, np.inf)  # of ripple in the margins' rests: the check's is limited
 LEAST_RAD2 = 1e-9
 
 
@@ -62,10 +65,10 @@ class CheckOnModel:
     trials: Trials
     foresight: Foresight
     margins: Margins
-    quiet_v: Floats  # (4,) V rms of ripple at rest
     limits: Limits  # the arm's; of error the model's
     led: Floats  # (4,) rad², the model's error before in what a hand leads
     overshoot: Floats  # (4,) % of a step, in the check's moves
+    ripple: Floats  # (4,) V rms, after them
 
     @classmethod
     def of(cls, model: Model, trials: Trials, foresight: Foresight, seed: int, threads: int) -> CheckOnModel:
@@ -73,22 +76,21 @@ class CheckOnModel:
         arm, table, before = with_usual_noise(model.arm), trials.table.with_raw(trials.others), trials.before
         plants = np.vstack([plant_row(arm), loosest_plant(model.plants)])
         margins = Margins(arm, table, plants, threads=threads, searching=True, seed=seed)
-        rows = controllers_of(table)[None]
-        ripple = margins.unrest(rows, exact=True)[AT_REST].ripple[0].max(axis=0)
         led = LedModel(arm, table, before.traces)
-        (traces,) = led.run(rows, plants[:1])
+        (traces,) = led.run(controllers_of(table)[None], plants[:1])
         known = measure(traces, trials.check, table.supply_v)
-        limits = Limits.of(before.measured, NONE_KEPT)
+        quiet_v = QUIET_SHARE * table.supply_v
+        limits, own = (Limits.of(one, NONE_KEPT, quiet_v) for one in (before.measured, known))
         return cls(
             arm=led,
             plants=np.vstack([plants[:1], _worsen(plants[1:])]),
             trials=trials,
             foresight=foresight,
             margins=margins,
-            quiet_v=np.maximum(ripple, QUIET_SHARE * table.supply_v),
-            limits=Limits(limits.unrest, limits.rattle, limits.chatter, Limits.of(known, NONE_KEPT).error),
+            limits=replace(limits, error=own.error),
             led=known.error[LED].sum(axis=0),
             overshoot=np.fmax(known.worst("overshoot"), OVERSHOOT),
+            ripple=np.fmax(known.worst("ripple"), HOST_LED * quiet_v),
         )
 
     def costs(self, controllers: Controllers) -> Floats:
@@ -100,7 +102,7 @@ class CheckOnModel:
         """The error in what a hand leads, rms as a share of that before, and what the rest costs, (n, 4) each."""
         unrest = self.margins.unrest(controllers)
         near = {name: found for name, found in unrest.items() if name not in (TWICE, TEETH)}
-        prices = penalty(near, self.quiet_v, ripple_price=0.0)
+        prices = penalty(near, NO_LIMIT_V)
         ratios = self.foresight.estimate(controllers)
         prices += PRICE * np.where(self.foresight.believed, np.maximum(ratios / SURE_OF_STEPS - 1.0, 0.0), 0.0)
         errors = np.empty_like(prices)
@@ -108,7 +110,8 @@ class CheckOnModel:
         for row, (one, other) in enumerate(zip(known, worse, strict=True)):
             errors[row] = np.sqrt(one.error[LED].sum(axis=0) / np.maximum(self.led, LEAST_RAD2))
             prices[row] += PRICE * (self._beyond(one, LIMITED) + self._beyond(other, HUNTING))
-            prices[row] += PRICE * np.maximum(np.nan_to_num(one.worst("overshoot")) / self.overshoot - 1.0, 0.0)
+            for name in ("overshoot", "ripple"):
+                prices[row] += PRICE * np.maximum(np.nan_to_num(one.worst(name)) / getattr(self, name) - 1.0, 0.0)
         return errors, prices
 
     def _measured(self, controllers: Controllers, plant: Floats) -> Iterator[Measures]:

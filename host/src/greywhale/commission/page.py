@@ -22,6 +22,7 @@ MEASURES: tuple[Measure, ...] = (
     ("unrest", "unrest at rest", "mrad rms", 1e3, ".1f"),
     ("rattle", "rattle in motion", "mrad rms", 1e3, ".1f"),
     ("chatter", "chatter", "1/s", 1.0, ".0f"),
+    ("ripple", "ripple at rest, above 20 Hz", "V rms", 1.0, ".2f"),
     ("voltage", "voltage, most", "V", 1.0, ".2f"),
     ("overshoot", "overshoot of moves", "%", 1.0, ".0f"),
     ("settling", "settling time of moves", "s", 1.0, ".2f"),

@@ -142,8 +142,13 @@ class CommissioningResult:
         lines += [_row("", [f"joint {joint}" for joint in joints]), _row("", [JOINT_NAMES[joint] for joint in joints])]
         for name, was, now in pairs:
             lines.append(_row(name, [f"{1e3 * was[joint]:.1f} -> {1e3 * now[joint]:.1f}" for joint in joints]))
-        lines += ["", "In the moves: overshoot (% of the step), and settling time to within 5 % (s).", ""]
-        for name, form in (("overshoot", ".0f"), ("settling", ".2f")):
+        lines += [
+            "",
+            "In the moves: overshoot (% of the step), and settling time to within 5 % (s).",
+            "At rest: the voltage above 20 Hz, which one hears (V rms).",
+            "",
+        ]
+        for name, form in (("overshoot", ".0f"), ("settling", ".2f"), ("ripple", ".2f")):
             was, now = before.worst(name), after.worst(name)
             lines.append(_row(name, [f"{_cell(was[joint], form)} -> {_cell(now[joint], form)}" for joint in joints]))
         notes = [

@@ -17,6 +17,7 @@ from greywhale.commission.judge import Limits, TrialVerdict, judge
 from greywhale.commission.measures import Measures, PartFacts, Traces, measure, traces_of
 from greywhale.commission.motions import Check
 from greywhale.files.log import read_evidence
+from greywhale.motion.swings import QUIET_SHARE
 from greywhale.protocol.firmware import JOINTS
 from greywhale.protocol.table import CONTROLLER_COLUMNS, ParameterTable
 from greywhale.simulate.controllers import controllers_of
@@ -59,7 +60,7 @@ class Trial:
 
     @property
     def bearable(self) -> bool:
-        """Whether all joints passed, or have a little too much unrest, rattling or chatter and no other fault."""
+        """Whether all joints passed, or are a little restless and have no other fault."""
         return all(verdict.bearable for verdict in self.verdicts)
 
     @property
@@ -159,5 +160,5 @@ class Trials:
         guilty = [played.stopped if joint == played.joint else "" for joint in range(JOINTS)]
         kept = (rows == controllers_of(self.table)).all(axis=1)
         foreseen = ("",) * JOINTS if self.foresight is None else self.foresight.clauses(rows)
-        verdicts = judge(measured, before, Limits.of(before, kept), guilty, foreseen)
+        verdicts = judge(measured, before, Limits.of(before, kept, QUIET_SHARE * self.table.supply_v), guilty, foreseen)
         return Trial(name, rows.copy(), self.table_of(rows), path, played.stopped, measured, verdicts, traces)

@@ -83,15 +83,20 @@ def smooth_motion(angles: Floats, row_s: float) -> Floats:
 
 def unrest(leader: Floats, follower: Floats, still_rad: float = STILL_RAD) -> Floats:
     """(4,) rad rms over all rests; NaN for a joint whose leader never rests. A row a millisecond."""
+    return _swings_at_rest(leader, follower, MEAN_S, still_rad)
+
+
+def _swings_at_rest(leader: Floats, records: Floats, mean_s: float, still_rad: float) -> Floats:
+    """The rms (4,) of records (rows, 4) about their mean over `mean_s`, over all rests of each joint's leader."""
     found = np.full(JOINTS, np.nan)
-    window, mean, least = (round(seconds / TICK_S) for seconds in (REST_AFTER_S, MEAN_S, SHORTEST_REST_S))
+    window, mean, least = (round(seconds / TICK_S) for seconds in (REST_AFTER_S, mean_s, SHORTEST_REST_S))
     for joint in range(JOINTS):
         rest = resting(leader[:, joint], window, still_rad)
         edges = np.flatnonzero(np.diff(np.concatenate(([False], rest, [False])).astype(np.int8)))
         swings = []
         for first, last in zip(edges[::2], edges[1::2], strict=True):
             # A mean over samples of the next move would show that move.
-            path = follower[first : last - mean, joint]
+            path = records[first : last - mean, joint]
             if len(path) >= least:
                 swings.append(path - scipy.ndimage.uniform_filter1d(path, mean, mode="nearest"))
         if swings:
@@ -204,6 +209,11 @@ def ripple_of_record(voltage: Floats) -> Floats:
     less = voltage - scipy.ndimage.uniform_filter1d(voltage, size, axis=0, mode="nearest")
     found: Floats = np.sqrt(np.mean(less[size // 2 : len(less) - size // 2] ** 2, axis=0))
     return found
+
+
+def ripple_at_rest(leader: Floats, voltage: Floats) -> Floats:
+    """The ripple (4,) over all rests; NaN for a joint whose leader never rests. A row a millisecond."""
+    return _swings_at_rest(leader, voltage, RIPPLE_S, STILL_RAD)
 
 
 def _ticks(seconds: float) -> int:

@@ -257,10 +257,10 @@ LOUD_PRICE = 1.0
 LOST_PRICE = 10.0
 
 
-def penalty(found: dict[str, Unrest], quiet_v: Floats, ripple_price: float = RIPPLE_PRICE) -> Floats:
+def penalty(found: dict[str, Unrest], quiet_v: Floats) -> Floats:
     """What candidates pay (n, 4), mostly for scenarios that fail; `quiet_v` (4,) is the ripple that is allowed."""
     share = found[AT_REST].ripple.mean(axis=1) / quiet_v
-    total = ripple_price * share + LOUD_PRICE * np.maximum(share - SEARCH_RIPPLE, 0.0)
+    total = RIPPLE_PRICE * share + LOUD_PRICE * np.maximum(share - SEARCH_RIPPLE, 0.0)
     for scenario, one in found.items():
         fails = (TEETH_PRICE if scenario == TEETH else FAIL_PRICE) * one.fails
         excess = np.maximum(one.chatter / CHATTER_AT_REST_HZ - SEARCH_CHATTER, 0.0)
