@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import fields, replace
 from pathlib import Path
 
 import numpy as np
@@ -94,3 +94,21 @@ def test_a_joint_that_hunts_on_the_worse_arm_alone_costs_more(check: CheckOnMode
     rows = varied(check, 1, {KP: 1.8, KD: 1.45})
     worse = np.vstack([check.plants[:1], with_gain(check.plants[1:], 6.0)])
     assert costs_beside(replace(check, plants=worse), rows)[1][1] > costs_beside(check, rows)[1][1] + 0.1
+
+
+class ShakenJoint(CheckOnModel):
+    """A stiffer joint follows better, but joint 2 does not bear to be stiff beside a joint 0 that is much stiffer."""
+
+    def costs(self, controllers: np.ndarray) -> np.ndarray:
+        factors = controllers[:, :, KP] / controllers_of(self.trials.table)[:, KP]
+        found: np.ndarray = 1.0 / factors
+        found[:, 2] += 100.0 * ((factors[:, 0] > 1.5) & (factors[:, 2] > 1.2))
+        return found
+
+
+def test_what_the_search_finds_is_good_as_a_whole(check: CheckOnModel) -> None:
+    shaken = ShakenJoint(**{one.name: getattr(check, one.name) for one in fields(check)})
+    begin = controllers_of(check.trials.table)
+    before, after = shaken.costs(np.stack([begin, shaken.search(begin, 0, show_no_progress)]))
+    assert after.sum() < 0.9 * before.sum()
+    assert after[2] < 100.0

@@ -116,14 +116,18 @@ def traces_of(log: Log, check: Check) -> Traces:
     return Traces(leader, follower, voltage, _begin(leader, check))
 
 
-def measure(traces: Traces, check: Check, supply_v: float) -> Measures:
-    """Measure every part that was played to its end."""
+def measure(traces: Traces, check: Check, supply_v: float, *, only_unrest: bool = False) -> Measures:
+    """Measure every part that was played to its end; of a search's many, some want nothing but the unrest."""
     found = {name: np.full((len(PARTS), JOINTS), np.nan) for name in NAMES}
     for place, (name, part) in enumerate(check.parts.items()):
         rows = traces.rows(part)
         if rows.stop - rows.start < round((part[1] - part[0]) / TICK_S) - 5:
             continue
         leader, follower, voltage = traces.leader[rows], traces.follower[rows], traces.voltage[rows]
+        if name not in HAND_LED:
+            found["unrest"][place] = unrest(leader, follower)
+        if only_unrest:
+            continue
         found["error"][place] = np.mean((leader - follower) ** 2, axis=0)
         if name == HOLDING:
             found["error"][place] = still_error(leader, follower)
@@ -134,8 +138,6 @@ def measure(traces: Traces, check: Check, supply_v: float) -> Measures:
             found["ripple"][place] = ripple_at_rest(leader, voltage)
         if name in HAND_LED:
             found["rattle"][place] = rattle_of_record(leader, follower)
-        else:
-            found["unrest"][place] = unrest(leader, follower)
     return Measures(**found)
 
 

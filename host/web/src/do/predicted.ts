@@ -9,6 +9,7 @@ const MEASURES = {
   unrest: { unit: "mrad rms", size: (rad: number) => 1000 * rad, digits: 2 },
   rattle: { unit: "mrad rms", size: (rad: number) => 1000 * rad, digits: 2 },
   chatter: { unit: "1/s", size: (value: number) => value, digits: 1 },
+  ripple: { unit: "V rms", size: (value: number) => value, digits: 2 },
   voltage: { unit: "V", size: (value: number) => value, digits: 2 },
   overshoot: { unit: "%", size: (value: number) => value, digits: 1 },
   settling: { unit: "s", size: (value: number) => value, digits: 2 },
