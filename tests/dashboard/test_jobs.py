@@ -149,7 +149,7 @@ def test_a_page_that_watches_starts_nothing_on_the_board(desk: Desk) -> None:
         desk.jobs.stop("none")
 
 
-ECHO = "import json, sys; print(json.dumps({'words': sys.argv[3:]}))"  # a verb that tells how it was called
+ECHO = "import json, sys; input(); print(json.dumps({'words': sys.argv[3:]}))"  # tells how it was called, when asked
 
 
 def test_what_needs_the_port_itself_has_it_as_long_as_it_runs(shared: Shared, tmp_path: Path) -> None:
@@ -170,8 +170,10 @@ def test_what_needs_the_port_itself_has_it_as_long_as_it_runs(shared: Shared, tm
         jobs.start(asked, page.client.id)
     shared.relay.drive(page.client)
     shared.relay.close("the port", "No firmware answers there; flash it.")
-    assert jobs.start(asked, page.client.id)["state"] == "running"
+    started = jobs.start(asked, page.client.id)
+    assert started["state"] == "running"
     assert told.get(timeout=PATIENCE_S)["state"] == "running", "a page sees at once what it has started"
+    jobs.say(started["id"], "go on")
     ended = told.get(timeout=PATIENCE_S)
     jobs.close()
     assert ended["result"]["words"] == ["-", "flash", "--hex=a.hex", "--port", "the port", "--json", "--"]
