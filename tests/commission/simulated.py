@@ -23,8 +23,6 @@ from greywhale.board.stream import Received
 from greywhale.commission import CommissioningRequest, foresee, learn, on_model, run
 from greywhale.commission.arm_on_port import PlayedMotion
 from greywhale.commission.hunting_stop import Hunting, HuntingStop
-from greywhale.commission.journal import CommissioningJournal
-from greywhale.commission.learn import LearntController
 from greywhale.commission.motions import JointRange
 from greywhale.commission.search import KD, KI, KP
 from greywhale.files.log import LogWriter, read_log
@@ -36,6 +34,7 @@ from greywhale.protocol.firmware import ANGLE_LSB, JOINTS, TICK_S, pwm_steps
 from greywhale.protocol.table import ParameterTable
 from greywhale.simulate.closed_loop import ClosedLoop, known_readings
 from greywhale.simulate.controllers import controllers_of
+from greywhale.tune import TuningResult
 from greywhale.tune.model import Model
 from tests.tune.models import write_model
 
@@ -101,23 +100,43 @@ def options_in(folder: Path) -> Callable[..., CommissioningRequest]:
     return make
 
 
+def tuned(model: Model, before: np.ndarray, after: np.ndarray) -> TuningResult:
+    """A tuning that nobody judged."""
+    return TuningResult(
+        model=model,
+        table=model.table,
+        strategy="mf",
+        method="default",
+        seed=0,
+        budget=1,
+        evaluations=1,
+        complete=True,
+        before=before,
+        after=after,
+        cost_before=(1.0,) * JOINTS,
+        cost_after=(1.0,) * JOINTS,
+        curves=(),
+        margins_before=(),
+        margins=(),
+        held_out=(),
+        notes=(),
+    )
+
+
 def in_no_time(rig: SimulatedRig, patch: pytest.MonkeyPatch) -> None:
     """No board; controllers are found at once, twice as stiff, and too stiff for joint 2; few steps are foreseen; the
     model is only asked about steps of the search.
     """
 
-    def find(
-        book: CommissioningJournal, name: str, model: Model, start: np.ndarray, **options: object
-    ) -> LearntController:
+    def tune(model: Model, *, start: np.ndarray, **options: object) -> TuningResult:
         rows = start.copy()
         rows[:, [KP, KI]] *= 2
         rows[:, KD] = np.rint(1.4 * rows[:, KD])
         rows[2, KP] *= 10
-        book.note(name, {})
-        return LearntController(model.arm, rows, (), True)
+        return tuned(model, start, rows)
 
     patch.setattr(run, "connected", rig.connected)
-    patch.setattr(learn, "find_controllers", find)
+    patch.setattr(learn, "tune", tune)
     patch.setattr(on_model, "PACKS", ())
     steps = multi_steps()
     few = Trajectory(steps.time_s[steps.time_s < 4.0], steps.angles[steps.time_s < 4.0])

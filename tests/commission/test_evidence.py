@@ -9,7 +9,7 @@ import pytest
 
 from greywhale.arm import ArmParameters
 from greywhale.arm.plants import column, plant_row
-from greywhale.commission.evidence import failing_plants, gather
+from greywhale.commission.evidence import failing_plants, to_fit, to_validate
 from greywhale.commission.journal import CommissioningJournal
 from greywhale.commission.motions import check_motion
 from greywhale.commission.trials import Trials
@@ -56,15 +56,15 @@ def test_an_arm_that_rests_gives_no_such_plant(trials: Trials, rig: SimulatedRig
 def test_the_best_trials_are_fitted_and_the_first_recording_validates(trials: Trials, rig: SimulatedRig) -> None:
     before = play_before(trials, rig)
     excite = read_log(before.path)
-    assert gather(excite, trials).fit == (excite,)
+    assert to_fit(excite, trials).logs == (excite,)
     for joints in ([0], [1], [0, 1], [2]):
         play(trials, rig, stiffer(trials, joints, BETTER))
-    known = gather(excite, trials)
-    assert [log.name for log in known.validate][:1] == [str(before.path)]
-    assert len(known.fit) == 3
-    assert len({log.name for log in (*known.fit[1:], *known.validate)}) == 4
-    tables = {table.crc: table for table in known.tables}
-    for log in (*known.fit[1:], *known.validate):
-        trial = next(one for one in trials.done if str(one.path) == log.name)
-        assert log.origin.param_crc is not None
-        assert np.array_equal(controllers_of(tables[log.origin.param_crc]), trial.rows)
+    fit, validate = to_fit(excite, trials), to_validate(trials)
+    assert [log.name for log in validate.logs][:1] == [str(before.path)]
+    assert len(fit.logs) == 3
+    assert len({log.name for log in (*fit.logs[1:], *validate.logs)}) == 4
+    for known in (fit, validate):
+        for log, table in zip(known.logs, known.tables, strict=True):
+            assert log.origin.param_crc == table.crc
+            trial = next(one for one in trials.done if str(one.path) == log.name)
+            assert np.array_equal(controllers_of(table), trial.rows)

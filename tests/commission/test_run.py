@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -17,20 +17,15 @@ from greywhale.commission.page import facts, save_page
 from greywhale.commission.result import CommissioningResult, errors_beside
 from greywhale.files.arm import default_arm, load_arm
 from greywhale.files.leader import load_leader
+from greywhale.files.log import Log, read_log
 from greywhale.files.model import arm_toml
 from greywhale.protocol.table import ParameterTable
 from greywhale.simulate.controllers import controllers_of
-from greywhale.tune.model import Model, load_model
 from tests.commission.simulated import SimulatedRig, in_no_time, options_in
-from tests.support.interrupts import ctrl_c_at
-from tests.support.tuning import judge_nothing, shorten
 from tests.tune.models import write_model
 
 pytestmark = pytest.mark.slow
 Make = Callable[..., CommissioningRequest]
-
-
-find_controllers = learn.find_controllers
 
 
 @pytest.fixture(autouse=True)
@@ -130,29 +125,6 @@ def test_joints_that_follow_well_or_gain_no_more_get_no_more_trials(hoped: list[
     assert run.is_enough(hoped) == enough
 
 
-def test_an_interrupted_tuning_goes_on(rig: SimulatedRig, options: Make, monkeypatch: pytest.MonkeyPatch) -> None:
-    """With the real search, over the model's own plant alone."""
-    shorten(monkeypatch)
-    judge_nothing(monkeypatch)
-
-    def read(path: Path, seed: int, params: Path) -> Model:
-        return load_model(path, samples=1, seed=seed, force=True, params=params)
-
-    monkeypatch.setattr(learn, "find_controllers", find_controllers)
-    monkeypatch.setattr(learn, "read_model", read)
-    whole = commission(options(out=options().out.parent / "whole", trials=1, budget=5))
-    with pytest.raises(KeyboardInterrupt):
-        rig.before = rig.stored = whole.trials.table
-        commission(options(trials=1, budget=5), ctrl_c_at("tuning", 0.4))
-    assert rig.stored == whole.trials.table
-    journal = options().out / "controller-1.toml.journal"
-    assert journal.exists()
-    rig.before = rig.stored = whole.trials.table
-    outcome = commission(options(trials=1, budget=5, resume=True))
-    assert not journal.exists()
-    assert outcome.as_dict() == whole.as_dict()
-
-
 def test_a_model_of_another_arm_is_refused_before_it_moves_the_board(rig: SimulatedRig, options: Make) -> None:
     arm = default_arm()
     joints = [joint.model_dump() for joint in arm.joint]
@@ -173,25 +145,39 @@ def test_without_a_model_the_arm_is_excited_and_identified(
     rig: SimulatedRig, options: Make, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The identification itself has tests of its own; here it is enough that it gets the right logs."""
-    given = {}
+    steps: list[tuple[str, list[str]]] = []
     begun: list[ArmParameters | None] = []
 
-    def find(book, name, nominal, known, seed, report, begin):  # type: ignore[no-untyped-def]
-        given[name] = known
-        begun.append(begin)
-        return options().model
+    class Found:
+        complete = True
 
-    monkeypatch.setattr(learn, "find_model", find)
+        def save(self, path: Path) -> None:
+            path.write_bytes(Path(str(options().model)).read_bytes())
+
+    def note(step: str, logs: Sequence[Log], tables: Sequence[ParameterTable]) -> Found:
+        assert {log.origin.param_crc for log in logs} <= {table.crc for table in tables}
+        steps.append((step, [Path(log.name).stem for log in logs]))
+        return Found()
+
+    def identify(logs, nominal, *, tables, seed, begin, report):  # type: ignore[no-untyped-def]
+        begun.append(begin)
+        return note("fit", logs, tables)
+
+    monkeypatch.setattr(learn, "identify", identify)
+    monkeypatch.setattr(learn, "validated", lambda found, logs, tables: note("validate", logs, tables))
     monkeypatch.setattr(run, "DESIGN_BUDGET", 2)
     monkeypatch.setattr(run, "WANTING", 0.0)
     outcome = commission(options(model=None, rounds=2, trials=2))
-    first, second = given["model-1"], given["model-2"]
     assert begun == [None, outcome.rounds[0].learnt.arm], "the second model goes on from the first"
-    assert [len(one.fit) for one in (first, second)] == [1, 2]
-    assert first.fit[0].time[-1] > load_leader(outcome.trials.book.path("excite_leader.csv")).duration_s - 1.0
-    assert [log.name for log in first.validate] == [str(outcome.trials.before.path)]
-    crcs = {table.crc for table in second.tables}
-    assert {log.origin.param_crc for log in (*second.fit, *second.validate)} <= crcs
+    played = [one.name for one in outcome.rounds[0].trials if not one.stopped]
+    assert steps == [
+        ("fit", ["excite"]),
+        ("validate", ["before"]),
+        ("fit", ["excite", *played]),
+        ("validate", ["before"]),
+    ]
+    book = outcome.trials.book
+    assert read_log(book.path("excite.csv")).time[-1] > load_leader(book.path("excite_leader.csv")).duration_s - 1.0
 
 
 def test_the_report_shows_predicted_beside_measured(whole: Whole, tmp_path: Path) -> None:

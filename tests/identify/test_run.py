@@ -12,7 +12,7 @@ from greywhale.arm import ArmParameters
 from greywhale.arm.plants import column
 from greywhale.files.arm import load_arm
 from greywhale.files.log.condition import Condition
-from greywhale.identify import IdentificationResult, identify
+from greywhale.identify import IdentificationResult, identify, validated
 from greywhale.identify.judge import CHANGED, FIT, SECOND, LogVerdict, judge, warnings_of
 from greywhale.motion import human_reaches
 from greywhale.protocol.table import ParameterTable
@@ -91,6 +91,15 @@ def test_model_file_is_an_arm_file(outcome: IdentificationResult, tables: list[P
     named = {one["name"]: one for one in facts["parameter"]}
     assert named["joint0.damping"]["standard_deviation"] > 0.0
     assert isinstance(facts["fisher_condition"], float)
+
+
+@pytest.mark.slow
+def test_logs_that_come_later_judge_as_those_that_were_there(
+    outcome: IdentificationResult, recorded: Recorded, tables: list[ParameterTable]
+) -> None:
+    early = replace(outcome, subjects=outcome.subjects[:1], verdicts=outcome.verdicts[:1], warnings=("early",))
+    late = validated(early, [recorded.second, recorded.changed], tables[1:])
+    assert late.identification() == outcome.identification()
 
 
 @pytest.mark.slow

@@ -33,21 +33,27 @@ SHOWN = 0.5
 
 @dataclass(frozen=True)
 class Evidence:
-    """Logs to fit and to validate with, and the tables that they were recorded with."""
+    """Logs, and the tables that they were recorded with."""
 
-    fit: tuple[Log, ...]
-    validate: tuple[Log, ...]
+    logs: tuple[Log, ...]
     tables: tuple[ParameterTable, ...]
 
 
-def gather(excite: Log, trials: Trials) -> Evidence:
-    """The excitation and the best played trials to fit, those from before and another to validate."""
-    whole = [one for one in trials.done[1:] if not one.stopped]
-    whole.sort(key=lambda one: one.score)
-    fitted, others = whole[:MOST_FITTED], whole[MOST_FITTED : MOST_FITTED + 1]
-    logs = [read_evidence(trials.before.path), *(read_evidence(one.path) for one in others)]
-    tables = [trials.table, *(one.table for one in (*fitted, *others))]
-    return Evidence((excite, *(read_evidence(one.path) for one in fitted)), tuple(logs), tuple(tables))
+def to_fit(excite: Log, trials: Trials) -> Evidence:
+    """The excitation, and the best trials that were played to their end."""
+    best = _whole(trials)[:MOST_FITTED]
+    return Evidence((excite, *(read_evidence(one.path) for one in best)), (trials.table, *(one.table for one in best)))
+
+
+def to_validate(trials: Trials) -> Evidence:
+    """The trial of the controllers from before, and the best that is not fitted."""
+    chosen = (trials.before, *_whole(trials)[MOST_FITTED : MOST_FITTED + 1])
+    return Evidence(tuple(read_evidence(one.path) for one in chosen), tuple(one.table for one in chosen))
+
+
+def _whole(trials: Trials) -> list[Trial]:
+    """Trials that nothing stopped, but that of the controllers from before; the best first."""
+    return sorted((one for one in trials.done[1:] if not one.stopped), key=lambda one: one.score)
 
 
 def failing_plants(arm: ArmParameters, trials: Trials) -> Floats:

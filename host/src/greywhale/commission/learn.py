@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -13,12 +14,13 @@ from greywhale.base.types import Controllers, Floats, NotedProgress
 from greywhale.commission.evidence import Evidence
 from greywhale.commission.journal import CommissioningJournal
 from greywhale.commission.predict import predict
+from greywhale.commission.request import CommissioningRequest
 from greywhale.commission.trials import Trial
 from greywhale.files import controller as controller_file
-from greywhale.identify import identify
+from greywhale.identify import IdentificationResult, identify, validated
 from greywhale.protocol.table import ParameterTable
 from greywhale.simulate import controller_row
-from greywhale.tune import DEFAULT_BUDGET, tune
+from greywhale.tune import DEFAULT_BUDGET, TuningResult, tune
 from greywhale.tune.model import Model, load_model
 from greywhale.tune.report.controller_file import save
 
@@ -39,80 +41,95 @@ class LearntController:
     others: dict[str, int] = field(default_factory=dict)  # raw, what the model says of the board's other parameters
 
 
-def find_model(
-    book: CommissioningJournal,
-    name: str,
-    nominal: ArmParameters,
-    known: Evidence,
-    seed: int,
-    report: NotedProgress,
-    begin: ArmParameters | None = None,
-) -> Path:
-    """Identify the arm, or take the model of that name from the journal; its file. `begin` is the model before."""
-    path = book.path(f"{name}.toml")
-    if book.get(name) is None:
-        outcome = identify(
-            known.fit,
-            nominal,
-            validate=known.validate,
-            tables=known.tables,
-            seed=seed,
-            begin=begin if begin is not None and "covariance" in (begin.identification or {}) else None,
-            report=report,
-        )
-        outcome.save(path)
-        if not outcome.complete:
-            raise KeyboardInterrupt
-        book.note(name, {"improvement": [round(one.improvement, 4) for one in outcome.verdicts]})
-    return path
+@dataclass(frozen=True)
+class Proposal:
+    """A model that is not validated yet (None: it was given), and the controllers tuned on it."""
+
+    model: IdentificationResult | None
+    tuning: TuningResult
 
 
-def find_controllers(
-    book: CommissioningJournal,
-    name: str,
-    model: Model,
-    *,
-    start: Controllers,
-    budget: int,
-    seed: int,
-    threads: int,
-    report: NotedProgress,
-) -> LearntController:
-    """Tune on a model, or take the controllers of that name from the journal. An interrupted search goes on."""
-    path, journal = book.path(f"{name}.toml"), book.path(f"{name}.toml.journal")
-    known = book.get(name)
-    if known is None:
-        outcome = tune(
-            model,
-            budget=budget,
-            seed=seed,
-            threads=threads,
-            start=start,
-            journal=journal,
-            resume=journal.exists(),
+@dataclass(frozen=True)
+class Lesson:
+    """What one round learns from. It is learnt once: the journal keeps it."""
+
+    book: CommissioningJournal
+    number: int  # of the round
+    options: CommissioningRequest
+    nominal: ArmParameters
+    fit: Evidence | None  # None: the model is given
+    begin: ArmParameters | None  # the model before
+    start: Controllers
+    failing: Callable[[ArmParameters], Floats]  # plants that show what the arm did and this model would not
+
+    @property
+    def path(self) -> Path:
+        """The model's file."""
+        given = self.options.model if self.fit is None else None
+        return self.book.path(f"model-{self.number}.toml") if given is None else given
+
+    def known(self) -> bool:
+        """Whether the journal has it."""
+        return self.book.get(self._name) is not None
+
+    def propose(self, report: NotedProgress) -> Proposal | None:
+        """Identify the arm and tune for it; None where the journal has both."""
+        if self.known():
+            return None
+        found = None if self.fit is None else self._find_model(self.fit, report)
+        tuning = tune(
+            self._with_failures(self._model()),
+            budget=self.options.budget or BUDGET,
+            seed=self.options.seed,
+            threads=self.options.threads,
+            start=self.start,
             report=report,
             floors=False,
             on_trial=True,
         )
-        if not outcome.complete:
+        if not tuning.complete:
             raise KeyboardInterrupt
-        save(outcome, path)
-        journal.unlink(missing_ok=True)
-        known = {"steady": outcome.steady, "doubts": list(model.doubts)}
-        book.note(name, known)
-    found = controller_file.load(path)
-    others = found.other_values()
-    return LearntController(model.arm, controller_row(found), tuple(known["doubts"]), known["steady"], others)
+        return Proposal(found, tuning)
 
+    def finish(self, proposal: Proposal | None, validate: Evidence) -> tuple[Model, LearntController]:
+        """Validate the model and write down what was learnt."""
+        if proposal is not None:
+            if proposal.model is not None:
+                validated(proposal.model, validate.logs, validate.tables).save(self.path)
+            tuning = replace(proposal.tuning, model=self._with_failures(self._model()))
+            save(tuning, self._controllers)
+            self.book.note(self._name, {"steady": tuning.steady, "doubts": list(tuning.model.doubts)})
+        model, facts = self._model(), self.book.get(self._name)
+        assert facts is not None
+        found = controller_file.load(self._controllers)
+        rows, others = controller_row(found), found.other_values()
+        return model, LearntController(model.arm, rows, tuple(facts["doubts"]), facts["steady"], others)
 
-def read_model(path: Path, seed: int, params: Path) -> Model:
-    """A model to tune for. Its doubts do not refuse it, because the arm itself judges what comes of it."""
-    return load_model(path, seed=seed, force=True, params=params)
+    def _find_model(self, fit: Evidence, report: NotedProgress) -> IdentificationResult:
+        begin = self.begin if self.begin is not None and "covariance" in (self.begin.identification or {}) else None
+        found = identify(fit.logs, self.nominal, tables=fit.tables, seed=self.options.seed, begin=begin, report=report)
+        found.save(self.path)
+        if not found.complete:
+            raise KeyboardInterrupt
+        return found
 
+    def _model(self) -> Model:
+        """Its doubts do not refuse it, because the arm itself judges what comes of it."""
+        params = self.book.path("before.toml")
+        return load_model(self.path, seed=self.options.seed, force=True, params=params)
 
-def with_failures(model: Model, plants: Floats) -> Model:
-    """The same model with plants that show what the arm did, where the search and the margins see them."""
-    return replace(model, plants=np.vstack([model.plants[:1], plants, model.plants[1:]])) if len(plants) else model
+    def _with_failures(self, model: Model) -> Model:
+        """The same model with plants that show what the arm did, where the search and the margins see them."""
+        plants = self.failing(model.arm)
+        return replace(model, plants=np.vstack([model.plants[:1], plants, model.plants[1:]])) if len(plants) else model
+
+    @property
+    def _name(self) -> str:
+        return f"controller-{self.number}"
+
+    @property
+    def _controllers(self) -> Path:
+        return self.book.path(f"{self._name}.toml")
 
 
 def refuse_other_arm(arm: ArmParameters, name: str, before: Trial, table: ParameterTable) -> None:

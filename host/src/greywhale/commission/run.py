@@ -1,7 +1,8 @@
 """A commissioning as a whole: what the arm does before, then rounds of a model, controllers, and trials on the arm.
 
-The arm is connected only while it is measured. The controllers on trial are never stored; the board keeps those from
-before until the end, when it gets the best that was measured.
+The first round learns while the arm plays the check with the controllers from before: its model needs the excitation
+alone. The arm is connected only while it is measured. The controllers on trial are never stored; the board keeps those
+from before until the end, when it gets the best that was measured.
 """
 
 from __future__ import annotations
@@ -14,11 +15,12 @@ import numpy as np
 import numpy.typing as npt
 
 from greywhale.base.errors import UserError
+from greywhale.base.side_job import SideJob
 from greywhale.base.types import Controllers, NotedProgress, show_no_progress
 from greywhale.commission import learn, start
 from greywhale.commission.arm_on_port import ArmOnPort, connected
 from greywhale.commission.choose import confirm
-from greywhale.commission.evidence import failing_plants, gather
+from greywhale.commission.evidence import Evidence, failing_plants, to_fit, to_validate
 from greywhale.commission.foresee import foresee
 from greywhale.commission.journal import CommissioningJournal
 from greywhale.commission.motions import JointRange, check_motion
@@ -69,7 +71,9 @@ class _Commissioning:
             for doubt in doubt_other_arm(load_arm(options.model), self.nominal, options.arm_file):
                 raise UserError(f"{options.model}: {doubt.reason}; {doubt.remedy}.")
         self.rounds: list[Round] = []
+        self.searches: list[JointSearch] = []
         self.before: ParameterTable | None = None
+        self.stage = "before"
         self.trying = ""  # which trial of a round runs, for the reports
         self.tried = ""  # how the last one went, for those that say nothing else
 
@@ -79,92 +83,111 @@ class _Commissioning:
             return self._run()
 
     def _run(self) -> CommissioningResult:
-        self._begin()
+        learnt = self._begin()
         trials, searches = self.trials, self.searches
         for number in range(1, self.options.rounds + 1):
-            learnt = self._learn(number)
+            if number > 1:
+                learnt = self._learn(number)
             first = len(trials.done)
-            with self._arm(f"round {number}") as arm:
+            with self._arm() as arm:
                 self._try(arm, learnt)
             self.rounds.append(Round(number, learnt, tuple(trials.done[first:])))
             if not self._is_wanting():
                 break
-        with self._arm("confirming") as arm:
+        self.stage = "confirming"
+        with self._arm() as arm:
             best = confirm(trials, searches, arm)
             if self.book.get("end") is None:
                 arm().keep(best.table)
                 self.book.note("end", {"best": best.name})
         return CommissioningResult(trials, tuple(self.rounds), best)
 
-    def _begin(self) -> None:
-        """Connect, refuse what must not move, and record the arm with the controllers from before."""
+    def _begin(self) -> learn.LearntController:
+        """Excite the arm, then play the check with the controllers from before, while the first round learns."""
+        with ExitStack() as stack:
+            with self._arm() as arm:
+                self._find_room(arm)
+                lesson = self._lesson(1, None if self.options.model else to_fit(self._excite(arm), self.trials))
+                job = stack.enter_context(SideJob(lesson.propose, self._report))
+                self._play_before(arm)
+            self.stage = "round 1"
+            return self._finish(lesson, job.result())
+
+    def _find_room(self, arm: Callable[[], ArmOnPort]) -> None:
+        """Refuse what must not move, and find out where the joints may go."""
         options, book = self.options, self.book
         facts = book.get("start")
         if facts is None:
-            with self._arm("before") as arm:
-                rig = arm()
-                start.refuse_uncalibrated(self.nominal, rig.before)
-                limits = limits_of(self.nominal, rig.before, rig.pose(), options.ranges or {})
-                room = JointRange(limits.pose, limits.low, limits.high)
-                start.refuse_stuck(rig, book, room)
-                save_parameters(book.path("before.toml"), rig.before)
-                facts = {
-                    "board": rig.before.board.key,
-                    "room": [array.tolist() for array in (room.pose, room.low, room.high)],
-                }
-                book.note("start", facts)
+            rig = arm()
+            start.refuse_uncalibrated(self.nominal, rig.before)
+            limits = limits_of(self.nominal, rig.before, rig.pose(), options.ranges or {})
+            room = JointRange(limits.pose, limits.low, limits.high)
+            start.refuse_stuck(rig, book, room)
+            save_parameters(book.path("before.toml"), rig.before)
+            facts = {
+                "board": rig.before.board.key,
+                "room": [array.tolist() for array in (room.pose, room.low, room.high)],
+            }
+            book.note("start", facts)
         self.before = before = load_parameters(book.path("before.toml")).for_board(find_board(facts["board"]))
         self.room = JointRange(*(np.array(values) for values in facts["room"]))
         self.trials = Trials(book, check_motion(self.room), before)
-        with self._arm("before") as arm:
-            first = self.trials.play_before(None if self.trials.known() else arm())
-        rows = controllers_of(before)
-        self.searches = [JointSearch(joint, before.period_ms) for joint in range(JOINTS)]
+
+    def _play_before(self, arm: Callable[[], ArmOnPort]) -> None:
+        self.stage = "before"
+        trials, options = self.trials, self.options
+        first = trials.play_before(None if trials.known() else arm())
+        rows = controllers_of(trials.table)
+        self.searches = [JointSearch(joint, trials.table.period_ms) for joint in range(JOINTS)]
         for search, verdict in zip(self.searches, first.verdicts, strict=True):
             search.add(rows[search.joint], verdict, first.name)
         if options.model is not None:
-            learn.refuse_other_arm(load_arm(options.model), str(options.model), first, before)
+            learn.refuse_other_arm(load_arm(options.model), str(options.model), first, trials.table)
 
     def _learn(self, number: int) -> learn.LearntController:
-        """A round's model and controllers."""
-        options, book, report = self.options, self.book, self._report(f"round {number}")
-        if number == 1 and options.model is not None:
-            path = options.model
-        else:
-            known = gather(self._excite(), self.trials)
-            begin = self.rounds[-1].learnt.arm if self.rounds else None
-            path = learn.find_model(book, f"model-{number}", self.nominal, known, options.seed, report, begin)
-        model = learn.read_model(path, options.seed, book.path("before.toml"))
+        """The model and controllers of a later round."""
+        with self._arm() as arm:
+            fit = to_fit(self._excite(arm), self.trials)
+        self.stage = f"round {number}"
+        lesson = self._lesson(number, fit)
+        return self._finish(lesson, lesson.propose(self._report))
+
+    def _lesson(self, number: int, fit: Evidence | None) -> learn.Lesson:
+        return learn.Lesson(
+            self.book,
+            number,
+            self.options,
+            self.nominal,
+            fit,
+            begin=self.rounds[-1].learnt.arm if self.rounds else None,
+            start=self._best_rows(),
+            failing=lambda arm: failing_plants(arm, self.trials),
+        )
+
+    def _finish(self, lesson: learn.Lesson, proposal: learn.Proposal | None) -> learn.LearntController:
+        """What a round learnt, with controllers that its model prefers on the check."""
         trials = self.trials
+        model, learnt = lesson.finish(proposal, to_validate(trials))
         trials.foresight = foresight = foresee(
             model.arm, trials.table, self.room, trials.check, trials.before.traces, trials.before.measured
         )
-        learnt = learn.find_controllers(
-            book,
-            f"controller-{number}",
-            learn.with_failures(model, failing_plants(model.arm, self.trials)),
-            start=self._best_rows(),
-            budget=options.budget or learn.BUDGET,
-            seed=options.seed,
-            threads=options.threads,
-            report=report,
-        )
         trials.others |= learnt.others
-        self.on_model = CheckOnModel.of(model, trials, foresight, options.seed, options.threads)
-        return replace(learnt, controllers=self._search_on_model(number, learnt.controllers))
+        self.on_model = CheckOnModel.of(model, trials, foresight, self.options.seed, self.options.threads)
+        return replace(learnt, controllers=self._search_on_model(lesson.number, learnt.controllers))
 
     def _search_on_model(self, number: int, tuned: Controllers) -> Controllers:
         """Controllers around the tuned ones that the round's model prefers on the check."""
         name = f"on-model-{number}"
         facts = self.book.get(name)
         if facts is None:
-            found = self.on_model.search(tuned, self.options.seed, self._report(f"round {number}"))
+            found = self.on_model.search(tuned, self.options.seed, self._report)
             facts = {"controllers": found.tolist()}
             self.book.note(name, facts)
         return np.array(facts["controllers"], dtype=np.int32)
 
-    def _excite(self) -> Log:
+    def _excite(self, arm: Callable[[], ArmOnPort]) -> Log:
         """The log of the motion that shows most about the arm."""
+        self.stage = "excite"
         options, path, leader = self.options, self.book.path("excite.csv"), self.book.path("excite_leader.csv")
         if self.book.get("excite") is None:
             if not leader.exists():
@@ -175,11 +198,10 @@ class _Commissioning:
                     ranges=options.ranges,
                     seed=options.seed,
                     budget=DESIGN_BUDGET,
-                    report=self._report("excite"),
+                    report=self._report,
                 )
                 save_leader(leader, designed.motion)
-            with self._arm("excite") as arm:
-                played = arm().play(load_leader(leader), path, self.trials.table, patient=True, watched=False)
+            played = arm().play(load_leader(leader), path, self.trials.table, patient=True, watched=False)
             if played.stopped:
                 raise UserError(f"the arm cannot be excited: {played.stopped}; narrow the --range.")
             self.book.note("excite", {"log": path.name})
@@ -237,22 +259,18 @@ class _Commissioning:
         """Whether another round may help: a joint follows little better than before."""
         return any(search.best.verdict.value > WANTING for search in self.searches)
 
-    def _report(self, stage: str) -> NotedProgress:
-        def told(what: str, fraction: float, note: str = "") -> None:
-            self.report(f"{stage}{self.trying}: {what}", fraction, note or self.tried)
-
-        return told
+    def _report(self, what: str, fraction: float, note: str = "") -> None:
+        self.report(f"{self.stage}{self.trying}: {what}", fraction, note or self.tried)
 
     @contextmanager
-    def _arm(self, stage: str) -> Iterator[Callable[[], ArmOnPort]]:
+    def _arm(self) -> Iterator[Callable[[], ArmOnPort]]:
         """The arm, connected when it is first asked for, and left with its motors off at the end."""
         with ExitStack() as stack:
             rigs: list[ArmOnPort] = []
 
             def arm() -> ArmOnPort:
                 if not rigs:
-                    told = self._report(stage)
-                    rigs.append(stack.enter_context(connected(self.options.port, self.before, told)))
+                    rigs.append(stack.enter_context(connected(self.options.port, self.before, self._report)))
                 return rigs[0]
 
             yield arm

@@ -6,7 +6,7 @@
 
 from greywhale.identify.found_model import ParameterEstimate
 from greywhale.identify.result import IdentificationResult
-from greywhale.identify.run import METHODS, identify
+from greywhale.identify.run import METHODS, identify, validated
 from greywhale.identify.samples import sampled_plants
 
-__all__ = ["METHODS", "IdentificationResult", "ParameterEstimate", "identify", "sampled_plants"]
+__all__ = ["METHODS", "IdentificationResult", "ParameterEstimate", "identify", "sampled_plants", "validated"]

@@ -58,7 +58,29 @@ def identify(
     refuse_shared(logs, validate)
     subjects, doubts = _subjects(logs, validate, arm, tables)
     task = IdentificationRequest(arm, tuple(subjects), seed, report or show_no_progress, begin)
-    found = _find(task, method)
+    return _judged(arm, method, seed, _find(task, method), subjects, (*_remarks(logs, validate), *doubts))
+
+
+def validated(
+    outcome: IdentificationResult, validate: Sequence[Log], tables: Sequence[ParameterTable]
+) -> IdentificationResult:
+    """The same model, judged also on logs that came after it was found; `tables` as for `identify`, for these logs."""
+    logs = [subject.log.log for subject in outcome.subjects]
+    refuse_shared(logs, validate)
+    known = [subject.table for subject in outcome.subjects if subject.table is not None]
+    subjects, doubts = _subjects(logs, validate, outcome.white_box, (*known, *tables))
+    remarks = (*_remarks(logs, validate), *doubts)
+    return _judged(outcome.white_box, outcome.method, outcome.seed, outcome.found, subjects, remarks)
+
+
+def _judged(
+    arm: ArmParameters,
+    method: str,
+    seed: int,
+    found: FoundModel,
+    subjects: Sequence[judge.JudgedLog],
+    remarks: Sequence[str],
+) -> IdentificationResult:
     verdicts = tuple(
         judge.judge(subject, arm, found.plant, found.zero, found.joints, found.draws) for subject in subjects
     )
@@ -68,7 +90,7 @@ def identify(
         seed=seed,
         found=found,
         verdicts=verdicts,
-        warnings=(*_remarks(logs, validate), *doubts, *judge.warnings_of(verdicts)),
+        warnings=(*remarks, *judge.warnings_of(verdicts)),
         doubts=judge.doubts_of(verdicts, found.joints),
         subjects=tuple(subjects),
     )
