@@ -11,9 +11,11 @@ A few logs show the spread of many numbers badly. So their scatter is drawn towa
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 
 import numpy as np
+from threadpoolctl import threadpool_limits
 
 from greywhale.arm.parameters import USUAL_TRACK_RAD
 from greywhale.base.types import Floats
@@ -68,17 +70,25 @@ def scatter_of_fits(
     root = np.linalg.cholesky(covariance)
     low, high = space.bounds()
     plant, zero = space.plants(x[None])[0], space.offsets(x[None])[0]
+
+    def fit(number: int) -> Floats:
+        made = [_simulate(*pair, plant, zero, 1 + number + LOGS * seed) for pair in zip(logs, loops, strict=True)]
+        windows = WindowResidual(made, space.arm, joints, longest_step=FINE_STEP_S)
+        windows.settle(plant, zero)
+        start = x + START * root @ np.random.default_rng([seed, number]).standard_normal(len(x))
+        return WindowFit(windows, space, np.clip(start, low, high)).run(STEPS) - x
+
     found: list[Floats] = []
-    try:
-        for number in range(LOGS):
-            report(number / LOGS)
-            made = [_simulate(*pair, plant, zero, 1 + number + LOGS * seed) for pair in zip(logs, loops, strict=True)]
-            windows = WindowResidual(made, space.arm, joints, longest_step=FINE_STEP_S)
-            windows.settle(plant, zero)
-            start = x + START * root @ np.random.default_rng([seed, number]).standard_normal(len(x))
-            found.append(WindowFit(windows, space, np.clip(start, low, high)).run(STEPS) - x)
-    except KeyboardInterrupt:
-        pass
+    # Two at a time: one works in numpy while the other simulates.
+    with threadpool_limits(limits=1, user_api="blas"), ThreadPoolExecutor(2) as pool:
+        fits = [pool.submit(fit, number) for number in range(LOGS)]
+        try:
+            for number, one in enumerate(fits):
+                report(number / LOGS)
+                found.append(one.result())
+        except KeyboardInterrupt:
+            for one in fits:
+                one.cancel()
     return np.array(found).reshape(-1, len(x))
 
 
