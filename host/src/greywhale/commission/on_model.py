@@ -43,10 +43,10 @@ from greywhale.tune.search.space import Space
 PACKS = ((0.05, 96), (0.05, 64), (0.03, 64), (0.02, 64))
 # What the worse arm has more of: loop gain, and lag of the potentiometers (s).
 GAIN, LAG_S = 1.3, 1e-3
-# The model is right to within the rest of the check's limits, and of the error on steps and the ripple before. An arm
-# rattles 1.1 to 1.8 times as much as its model, and hisses 1.0 to 1.1 times.
-SURE = {"unrest": 0.7, "rattle": 0.7, "chatter": 0.8, "error": 0.8}
-SURER = 0.95
+# The shares of the check's limits that a set on the model may take up, and of the error on steps and the ripple before.
+# An arm rattles 1.1 to 1.8 times as much as its model, and hisses 1.0 to 1.1 times.
+AIMS = {"unrest": 0.7, "rattle": 0.7, "chatter": 0.8, "error": 0.8}
+AIM_OF_BEFORE = 0.95
 WORTH = 0.9  # of a joint's error is what a trial on the arm must promise
 OVERSHOOT = 15.0  # % of a step, at most, or as much as before
 PRICE = 2.0  # of being beyond a limit by all of it
@@ -90,7 +90,7 @@ class CheckOnModel:
             limits=replace(limits, error=own.error),
             led=known.error[LED].sum(axis=0),
             overshoot=np.fmax(known.worst("overshoot"), OVERSHOOT),
-            ripple=np.fmax(SURER * known.worst("ripple"), HOST_LED * quiet_v),
+            ripple=np.fmax(AIM_OF_BEFORE * known.worst("ripple"), HOST_LED * quiet_v),
         )
 
     def costs(self, controllers: Controllers) -> Floats:
@@ -104,12 +104,12 @@ class CheckOnModel:
         near = {name: found for name, found in unrest.items() if name not in (TWICE, TEETH)}
         prices = penalty(near, NO_LIMIT_V)
         ratios = self.foresight.estimate(controllers)
-        prices += PRICE * np.where(self.foresight.believed, np.maximum(ratios / SURER - 1.0, 0.0), 0.0)
+        prices += PRICE * np.where(self.foresight.believed, np.maximum(ratios / AIM_OF_BEFORE - 1.0, 0.0), 0.0)
         errors = np.empty_like(prices)
         known, worse = self._measured(controllers, 0), self._measured(controllers, 1, only_unrest=True)
         for row, (one, other) in enumerate(zip(known, worse, strict=True)):
             errors[row] = np.sqrt(one.error[LED].sum(axis=0) / np.maximum(self.led, LEAST_RAD2))
-            prices[row] += PRICE * (self._beyond(one, SURE) + self._beyond(other, ["unrest"]))
+            prices[row] += PRICE * (self._beyond(one, AIMS) + self._beyond(other, ["unrest"]))
             for name in ("overshoot", "ripple"):
                 prices[row] += PRICE * np.maximum(np.nan_to_num(one.worst(name)) / getattr(self, name) - 1.0, 0.0)
         return errors, prices
@@ -124,7 +124,7 @@ class CheckOnModel:
         beyond: Floats = np.zeros(JOINTS)
         for name in names:
             share = np.nan_to_num(getattr(measured, name) / getattr(self.limits, name)).max(axis=0)
-            beyond += np.maximum(share / SURE[name] - 1.0, 0.0)
+            beyond += np.maximum(share / AIMS[name] - 1.0, 0.0)
         return beyond
 
     def promises(self, controllers: Controllers, joint: int, row: Row) -> bool:
@@ -139,9 +139,11 @@ class CheckOnModel:
     def search(self, begin: Controllers, seed: int, report: NotedProgress) -> Controllers:
         """The best found around controllers (4, 13), all joints together."""
         table, journal = self.trials.table, TuningJournal(None, {})
-        found, best = SearchState.nothing(begin), begin
+        found, best = SearchState.nothing(begin), begin.copy()
         whole = sum(sets for _, sets in PACKS)
         for number, (sigma, sets) in enumerate(PACKS):
+            if number:
+                lockstep.try_again(self.costs, found, journal, "check")
             lockstep.search_in_lockstep(
                 Space.default("sf", found.best, table["supply_mv"], table.period_ms),
                 self.costs,
@@ -157,7 +159,6 @@ class CheckOnModel:
                 sigma=sigma,
             )
             best = self._best_together(best, found.best)
-            lockstep.try_again(self.costs, found, journal, "check")
         idle = list(unused(table.joints_in_use))
         best[idle] = controllers_of(table)[idle]
         return best
