@@ -63,7 +63,7 @@ def _is_step(value: dict[str, Any]) -> bool:
 
 KIND = Kind(
     mark="greywhale_commission",
-    version=3,
+    version=4,
     noun="journal",
     subject="commissioning",
     anew="begin anew in another folder",

@@ -41,6 +41,7 @@ from greywhale.protocol.table import ParameterTable, find_board
 from greywhale.simulate.controllers import controllers_of
 from greywhale.tune.model_checks import doubt_other_arm
 
+EXCITING = "excite_leader.csv"
 DESIGN_BUDGET = 150  # the last evaluations of a search for a motion would gain little
 # Another round follows while a joint's best is above this share of before.
 WANTING = 0.5
@@ -114,7 +115,7 @@ class _Commissioning:
             return self._finish(lesson, job.result())
 
     def _find_room(self, arm: Callable[[], ArmOnPort]) -> None:
-        """Refuse what must not move, and find out where the joints may go."""
+        """Refuse what must not move, find out where the joints may go, and design the excitation if it comes next."""
         options, book = self.options, self.book
         facts = book.get("start")
         if facts is None:
@@ -122,7 +123,12 @@ class _Commissioning:
             start.refuse_uncalibrated(self.nominal, rig.before)
             limits = limits_of(self.nominal, rig.before, rig.pose(), options.ranges or {})
             room = JointRange(limits.pose, limits.low, limits.high)
-            start.refuse_stuck(rig, book, room)
+            if options.model is None:
+                with SideJob(lambda report: self._design(room, rig.before, report), self._report) as job:
+                    start.refuse_stuck(rig, book, room)
+                    job.result()
+            else:
+                start.refuse_stuck(rig, book, room)
             save_parameters(book.path("before.toml"), rig.before)
             facts = {
                 "board": rig.before.board.key,
@@ -185,23 +191,27 @@ class _Commissioning:
             self.book.note(name, facts)
         return np.array(facts["controllers"], dtype=np.int32)
 
+    def _design(self, room: JointRange, table: ParameterTable, report: NotedProgress) -> None:
+        """Design the motion that shows most about the arm."""
+        designed = design(
+            self.nominal,
+            room.pose,
+            table=table,
+            ranges=self.options.ranges,
+            seed=self.options.seed,
+            budget=DESIGN_BUDGET,
+            report=report,
+        )
+        save_leader(self.book.path(EXCITING), designed.motion)
+
     def _excite(self, arm: Callable[[], ArmOnPort]) -> Log:
-        """The log of the motion that shows most about the arm."""
+        """The log of that motion."""
         self.stage = "excite"
-        options, path, leader = self.options, self.book.path("excite.csv"), self.book.path("excite_leader.csv")
+        path, table = self.book.path("excite.csv"), self.trials.table
         if self.book.get("excite") is None:
-            if not leader.exists():
-                designed = design(
-                    self.nominal,
-                    self.room.pose,
-                    table=self.trials.table,
-                    ranges=options.ranges,
-                    seed=options.seed,
-                    budget=DESIGN_BUDGET,
-                    report=self._report,
-                )
-                save_leader(leader, designed.motion)
-            played = arm().play(load_leader(leader), path, self.trials.table, patient=True, watched=False)
+            if self.options.model is not None:
+                self._design(self.room, table, self._report)
+            played = arm().play(load_leader(self.book.path(EXCITING)), path, table, patient=True, watched=False)
             if played.stopped:
                 raise UserError(f"the arm cannot be excited: {played.stopped}; narrow the --range.")
             self.book.note("excite", {"log": path.name})
