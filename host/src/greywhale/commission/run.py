@@ -84,24 +84,24 @@ class _Commissioning:
             return self._run()
 
     def _run(self) -> CommissioningResult:
-        learnt = self._begin()
-        trials, searches = self.trials, self.searches
-        for number in range(1, self.options.rounds + 1):
-            if number > 1:
-                learnt = self._learn(number)
-            first = len(trials.done)
+        number, learnt = 1, self._begin()
+        while True:
+            first = len(self.trials.done)
             with self._arm() as arm:
                 self._try(arm, learnt)
-            self.rounds.append(Round(number, learnt, tuple(trials.done[first:])))
-            if not self._is_wanting():
-                break
+                self.rounds.append(Round(number, learnt, tuple(self.trials.done[first:])))
+                if number == self.options.rounds or not self._is_wanting():
+                    return self._confirm(arm)
+            number += 1
+            learnt = self._learn(number)
+
+    def _confirm(self, arm: Callable[[], ArmOnPort]) -> CommissioningResult:
         self.stage = "confirming"
-        with self._arm() as arm:
-            best = confirm(trials, searches, arm)
-            if self.book.get("end") is None:
-                arm().keep(best.table)
-                self.book.note("end", {"best": best.name})
-        return CommissioningResult(trials, tuple(self.rounds), best)
+        best = confirm(self.trials, self.searches, arm)
+        if self.book.get("end") is None:
+            arm().keep(best.table)
+            self.book.note("end", {"best": best.name})
+        return CommissioningResult(self.trials, tuple(self.rounds), best)
 
     def _begin(self) -> learn.LearntController:
         """Excite the arm, then play the check with the controllers from before, while the first round learns."""
