@@ -41,6 +41,8 @@ def test_comments_blank_lines_and_windows_line_ends_are_taken(tmp_path: Path) ->
         ("# only\n", "the file has no columns"),
         ("time_s,b\n0,1\n", "line 1: column a is missing; the columns must be time_s,a"),
         ("time_s,a,b\n0,1,2\n", "line 1: column 'b' is unknown"),
+        ("# a model\n\nname = 'arm'\n", ": this is TOML, but a log or a motion (CSV) is needed here."),
+        ("[[joint]]\nkp = 1\n", ": this is TOML, but a log or a motion (CSV) is needed here."),
         ("a,time_s\n0,1\n", "line 1: the columns are not in order"),
         ("time_s,a,a\n0,1,2\n", "line 1: the columns are not in order"),
         ("time_s,a\n", "0 rows of data, but at least 1 are needed"),

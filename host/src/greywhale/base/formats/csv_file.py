@@ -1,7 +1,7 @@
 """Reads a CSV file with a fixed set of columns; a bad cell is named by file, line and column.
 
-Lines that start with `#` before the column names are comments; logs keep their facts there. A file is read in blocks of
-whole lines, so that one of an hour needs no more memory than what is made of it.
+Lines that start with `#` before the column names are comments; logs keep their facts there. Empty lines say nothing. A
+file is read in blocks of whole lines, so that one of an hour needs no more memory than what is made of it.
 """
 
 from __future__ import annotations
@@ -152,12 +152,15 @@ class CsvFile:
                 Block(data.removeprefix(_BOM) if self._line == 1 else data, self._line, self._offset), self.name
             )
             self._line, self._offset = self._line + 1, self._offset + len(data)
-            if not text.startswith("#"):
+            if text.startswith("#"):
+                comments.append(text[1:].strip())
+            elif text.strip():
                 break
-            comments.append(text[1:].strip())
         self.comments = tuple(comments)
         found = [cell.strip() for cell in _cells(text.rstrip("\r\n"), self.name, self._line - 1)]
         if found != list(self._wanted):
+            if "=" in text or text.startswith("["):
+                raise UserError(f"{self.name}: this is TOML, but a log or a motion (CSV) is needed here.")
             raise UserError(f"{self.name}, line {self._line - 1}: {_column_problem(found, self._wanted)}.")
 
     def _refuse_long(self, line: bytes, number: int) -> None:
