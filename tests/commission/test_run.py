@@ -101,6 +101,7 @@ def test_a_round_ends_where_more_trials_are_not_worth_their_time(
         (f"round 1, trial {number} of 3 at most: recording", note) for number, note in enumerate(["", *beside[:2]], 1)
     ]
     monkeypatch.setattr(run, "GOOD", 1.0)
+    rig.before = rig.stored = outcome.trials.table
     assert len(commission(options(out=tmp_path / "all good")).rounds[0].trials) == 1
 
 
@@ -111,9 +112,9 @@ def test_a_joint_that_passed_is_varied_only_where_the_model_promises_something(
     for outcome, varied in ((whole.outcome, True), (commission(options(trials=3)), False)):
         _, second, third = outcome.rounds[0].trials[:3]
         passed = [verdict.bearable for verdict in second.verdicts]
-        assert passed == [True, True, False, False]
+        assert passed == [True, True, False, True]
         assert (second.rows[passed] != third.rows[passed]).any() == varied
-        assert (second.rows[2:] != third.rows[2:]).any(axis=1).all(), "what is restless gets softer all the same"
+        assert (second.rows[2] != third.rows[2]).any(), "what is restless gets softer all the same"
 
 
 @pytest.mark.parametrize(
