@@ -112,3 +112,11 @@ def test_what_the_search_finds_is_good_as_a_whole(check: CheckOnModel) -> None:
     before, after = shaken.costs(np.stack([begin, shaken.search(begin, 0, show_no_progress)]))
     assert after.sum() < 0.9 * before.sum()
     assert after[2] < 100.0
+
+
+def test_a_dead_end_of_the_tuning_is_left(check: CheckOnModel, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A joint that hardly moves: no narrow search around it finds one that follows."""
+    monkeypatch.setattr(on_model, "PACKS", ((0.02, 16),))
+    dead = varied(check, 1, {KP: 0.02, KD: 0.02, KI: 0.02})
+    before, after = costs_beside(check, check.search(dead, 0, show_no_progress))
+    assert after[1] < 1.5 * before[1] < 0.1 * costs_beside(check, dead)[1][1]
