@@ -78,6 +78,13 @@ def test_a_joint_that_follows_steps_worse_costs_more_where_the_model_knows_them(
     assert costs_beside(check, rows)[1][1] > costs_beside(unknown, rows)[1][1] + 0.01
 
 
+def test_a_joint_that_swings_between_steps_costs_more(check: CheckOnModel, monkeypatch: pytest.MonkeyPatch) -> None:
+    rows = controllers_of(check.trials.table)
+    calmer = replace(check, foresight=replace(check.foresight, unrest=0.5 * check.foresight.unrest))
+    monkeypatch.setattr(on_model, "STILL_RAD", 1e-6)
+    assert (calmer.costs(rows[None]) > check.costs(rows[None])).any()
+
+
 def test_a_joint_that_hisses_costs_more(check: CheckOnModel) -> None:
     rows = controllers_of(check.trials.table)
     quieter = replace(check, ripple=0.5 * check.ripple)
@@ -116,7 +123,7 @@ def test_what_the_search_finds_is_good_as_a_whole(check: CheckOnModel) -> None:
 
 def test_a_dead_end_of_the_tuning_is_left(check: CheckOnModel, monkeypatch: pytest.MonkeyPatch) -> None:
     """A joint that hardly moves: no narrow search around it finds one that follows."""
-    monkeypatch.setattr(on_model, "PACKS", ((0.02, 16),))
+    monkeypatch.setattr(on_model, "PACKS", ((0.05, 48),))
     dead = varied(check, 1, {KP: 0.02, KD: 0.02, KI: 0.02})
     before, after = costs_beside(check, check.search(dead, 0, show_no_progress))
     assert after[1] < 1.5 * before[1] < 0.1 * costs_beside(check, dead)[1][1]

@@ -21,6 +21,7 @@ from greywhale.commission.measures import Measures, Traces, measure
 from greywhale.commission.motions import PARTS, Check, JointRange
 from greywhale.commission.predict import predict
 from greywhale.motion import multi_steps
+from greywhale.motion.swings import unrest
 from greywhale.protocol.firmware import JOINTS
 from greywhale.protocol.table import ParameterTable
 from greywhale.simulate import Experiment
@@ -37,12 +38,13 @@ LEAST = 1e-12  # rad², the error of a joint that is not in use
 
 @dataclass(frozen=True)
 class Foresight:
-    """The errors on steps with the controllers from before, by a model; `believed` (4,) marks the joints it knows."""
+    """What a model says of the controllers from before on steps; `believed` (4,) marks the joints it knows."""
 
     experiment: Experiment
     plant: Floats
     before: Controllers
     error: Floats  # (4,) rad²
+    unrest: Floats  # (4,) rad rms, between the steps
     believed: npt.NDArray[np.bool_]
 
     def ratios(self, rows: Controllers) -> Floats:
@@ -50,10 +52,13 @@ class Foresight:
         found: Floats = self.experiment.run_exact(rows[None], self.plant).mse[0] / np.maximum(self.error, LEAST)
         return found
 
-    def estimate(self, rows: Controllers) -> Floats:
-        """The same (n, 4) of many (n, 4, 13), in single precision."""
-        found: Floats = self.experiment.run(rows, self.plant).mse / np.maximum(self.error, LEAST)
-        return found
+    def estimate(self, rows: Controllers, worse: Floats) -> tuple[Floats, Floats]:
+        """The same (n, 4) of many (n, 4, 13), in single precision, and the unrest (n, 4) between the steps, rad rms, on
+        the model or on a `worse` arm (1, columns), whichever is larger.
+        """
+        known, other = (self.experiment.run(rows, plant, every=1) for plant in (self.plant, worse))
+        restless = [[_unrest(self.experiment, angles) for angles in found.angles] for found in (known, other)]
+        return known.mse / np.maximum(self.error, LEAST), np.max(restless, axis=0)
 
     def clauses(self, rows: Controllers) -> tuple[str, ...]:
         """(4): what speaks against each joint's controller, "" for nothing; a controller from before always passes."""
@@ -84,4 +89,9 @@ def foresee(
     motion = clip_motion(multi_steps(), room.low, room.high)
     experiment = Experiment(motion, arm, table=table, seed=SEED)
     plant, before = plant_row(arm)[None], controllers_of(table)
-    return Foresight(experiment, plant, before, experiment.run_exact(before[None], plant).mse[0], believed)
+    found = experiment.run_exact(before[None], plant, every=1)
+    return Foresight(experiment, plant, before, found.mse[0], _unrest(experiment, found.angles[0]), believed)
+
+
+def _unrest(experiment: Experiment, angles: npt.NDArray[np.float32]) -> Floats:
+    return np.nan_to_num(unrest(experiment.leader, angles.astype(np.float64)))

@@ -6,8 +6,8 @@ a hand leads, as a share of that before, and more
 
 - beyond a share of what the check allows, and where it hunts on a worse arm: the loosest gears that the recordings
   allow, more loop gain, slower potentiometers;
-- where it would follow steps hardly better than before, if the model knows the joint's steps, overshoot in moves, or
-  hiss after them;
+- where it would follow steps hardly better than before, if the model knows the joint's steps, swing between them,
+  overshoot in moves, or hiss after them;
 - for the tuning's margins, without twice the loop gain and softer teeth, for which the worse arm stands.
 """
 
@@ -49,6 +49,7 @@ GAIN, LAG_S = 1.3, 1e-3
 # An arm rattles 1.1 to 2.0 times as much as its model, and hisses 1.0 to 1.1 times.
 AIMS = {"unrest": 0.7, "rattle": 0.5, "chatter": 0.8, "error": 0.8}
 AIM_OF_BEFORE = 0.95
+STILL_RAD = 0.002  # rms between steps, or what was there before: the check has few poses to hunt at
 WORTH = 0.9  # of a joint's error is what a trial on the arm must promise
 OVERSHOOT = 15.0  # % of a step, at most, or as much as before
 # A joint that keeps more of its error than this (rms) is searched once more: the tuned fuzzy sets may be a dead end.
@@ -109,7 +110,8 @@ class CheckOnModel:
         unrest = self.margins.unrest(controllers)
         near = {name: found for name, found in unrest.items() if name not in (TWICE, TEETH)}
         prices = penalty(near, NO_LIMIT_V)
-        ratios = self.foresight.estimate(controllers)
+        ratios, restless = self.foresight.estimate(controllers, self.plants[1:])
+        prices += PRICE * np.maximum(restless / np.maximum(self.foresight.unrest, STILL_RAD) - 1.0, 0.0)
         prices += STEPS_PRICE * np.where(self.foresight.believed, np.maximum(ratios / AIM_OF_BEFORE - 1.0, 0.0), 0.0)
         errors = np.empty_like(prices)
         known, worse = self._measured(controllers, 0), self._measured(controllers, 1, only_unrest=True)
