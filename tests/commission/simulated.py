@@ -138,6 +138,7 @@ def in_no_time(rig: SimulatedRig, patch: pytest.MonkeyPatch) -> None:
     patch.setattr(run, "connected", rig.connected)
     patch.setattr(learn, "tune", tune)
     patch.setattr(on_model, "PACKS", ())
+    patch.setattr(on_model, "POOR", np.inf)
     steps = multi_steps()
     few = Trajectory(steps.time_s[steps.time_s < 4.0], steps.angles[steps.time_s < 4.0])
     patch.setattr(foresee, "multi_steps", lambda: few)

@@ -50,6 +50,7 @@ def test_what_the_search_finds_follows_better_on_the_arm(
     check: CheckOnModel, rig: SimulatedRig, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(on_model, "PACKS", ((0.1, 96),))
+    monkeypatch.setattr(on_model, "POOR", np.inf)
     trials = check.trials
     found = check.search(controllers_of(trials.table), 0, show_no_progress)
     trial = trials.play(rig, found)  # type: ignore[arg-type]
@@ -123,7 +124,7 @@ def test_what_the_search_finds_is_good_as_a_whole(check: CheckOnModel) -> None:
 
 def test_a_dead_end_of_the_tuning_is_left(check: CheckOnModel, monkeypatch: pytest.MonkeyPatch) -> None:
     """A joint that hardly moves: no narrow search around it finds one that follows."""
-    monkeypatch.setattr(on_model, "PACKS", ((0.05, 48),))
+    monkeypatch.setattr(on_model, "PACKS", ((0.05, 32),))
     dead = varied(check, 1, {KP: 0.02, KD: 0.02, KI: 0.02})
     before, after = costs_beside(check, check.search(dead, 0, show_no_progress))
     assert after[1] < 1.5 * before[1] < 0.1 * costs_beside(check, dead)[1][1]

@@ -21,6 +21,7 @@ from greywhale.board.upload import read_parameters
 from greywhale.cli.entry import run
 from greywhale.cli.story import BenchProcess, RunningBench
 from greywhale.commission import arm_on_port
+from greywhale.commission import run as commissioning
 from greywhale.commission.arm_on_port import connected
 from greywhale.commission.motions import JointRange, check_motion, first_motion
 from greywhale.files.log import read_log
@@ -116,23 +117,24 @@ def test_a_line_lost_in_the_middle_leaves_motors_off_and_the_controllers_from_be
     assert running(bench) == (BEFORE, State.DISABLED)
 
 
-def send_in_the_check(number: int, patch: pytest.MonkeyPatch) -> None:
-    """This program gets the signal while it leads the arm along its first check."""
+def send_at(motion_file: str, number: int, patch: pytest.MonkeyPatch) -> None:
+    """This program gets the signal while it leads the arm along that motion; the excitation is the first that comes."""
 
     def record_led(device: Device, path: Path, motion: Trajectory, *, progress: Progress, **options: Any) -> Recording:
         def told(what: str, fraction: float) -> None:
             progress(what, fraction)
-            if path.name == "before.csv" and what == "recording" and fraction > 0.02:
+            if path.name == motion_file and what == "recording" and fraction > 0.02:
                 signal.raise_signal(number)
 
         return record.record_led(device, path, motion, progress=told, **options)
 
     patch.setattr(arm_on_port, "record_led", record_led)
+    patch.setattr(commissioning, "DESIGN_BUDGET", 1)
 
 
 def commission_killed(port: str, folder: Path) -> None:
     with pytest.MonkeyPatch.context() as patch:
-        send_in_the_check(signal.SIGKILL, patch)
+        send_at("excite.csv", signal.SIGKILL, patch)
         run(["-q", "commission", "-p", port, "-o", str(folder)])
 
 
@@ -149,7 +151,7 @@ def test_a_killed_program_leaves_motors_off_and_the_controllers_from_before(tmp_
 def test_ctrl_c_stops_the_motors_and_says_how_to_go_on(
     bench: LockStepBench, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    send_in_the_check(signal.SIGINT, monkeypatch)
+    send_at("before.csv", signal.SIGINT, monkeypatch)
     assert run(["-q", "commission", "-p", bench.port, "-o", str(tmp_path)]) == 130
     assert "--resume goes on" in capsys.readouterr().err
     assert not bench.command("status")["motors_enabled"]

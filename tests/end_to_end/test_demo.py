@@ -34,6 +34,7 @@ def test_the_demo_tells_its_story_and_proves_its_controllers_on_the_arm(
     judge_nothing(monkeypatch)
     monkeypatch.setattr(story, "PROVING_TRIALS", 1)
     monkeypatch.setattr(on_model, "PACKS", ((0.1, 12),))
+    monkeypatch.setattr(on_model, "POOR", 1e9)
     short = {"REACHES_S": 2.0, "HOLD_S": 0.5, "SLOW_S": 1.0, "PAUSE_S": 0.3, "MOVES": (0.5, -0.9)}
     short |= {"SMALL_RAD": (0.1, 0.0), "STILL_SHARES": (0.6, 0.0), "STILL_HOLD_S": 0.3}
     for name, value in short.items():
