@@ -20,18 +20,18 @@ from greywhale.arm.plants import plant_row
 from greywhale.base.errors import UserError
 from greywhale.base.types import show_no_progress
 from greywhale.board.stream import Received
-from greywhale.commission import CommissioningRequest, foresee, learn, on_model, run
+from greywhale.commission import CommissioningRequest, foresee, learn, run
 from greywhale.commission.arm_on_port import PlayedMotion
 from greywhale.commission.hunting_stop import Hunting, HuntingStop
 from greywhale.commission.motions import JointRange
-from greywhale.commission.search import KD, KI, KP
+from greywhale.commission.search import CheckOnModel
 from greywhale.files.log import LogWriter, read_log
 from greywhale.files.log.layout import Origin
 from greywhale.files.trajectory import Trajectory
 from greywhale.motion import multi_steps
 from greywhale.protocol import schema
 from greywhale.protocol.firmware import ANGLE_LSB, JOINTS, TICK_S, pwm_steps
-from greywhale.protocol.table import ParameterTable
+from greywhale.protocol.table import CONTROLLER_COLUMNS, ParameterTable
 from greywhale.simulate.closed_loop import ClosedLoop, known_readings
 from greywhale.simulate.controllers import controllers_of
 from greywhale.tune import TuningResult
@@ -42,6 +42,7 @@ POSE = np.array([0.0, 0.4, 0.0, 0.0])
 ROOM = JointRange(POSE, POSE - 0.9, POSE + 0.9)
 WAIT = 300  # ticks at the first pose
 EVERY = 4  # ticks from one row of a log to the next
+KP, KD, KI = (CONTROLLER_COLUMNS.index(name) for name in ("kp", "kd", "ki"))
 
 
 class SimulatedRig:
@@ -124,8 +125,8 @@ def tuned(model: Model, before: np.ndarray, after: np.ndarray) -> TuningResult:
 
 
 def in_no_time(rig: SimulatedRig, patch: pytest.MonkeyPatch) -> None:
-    """No board; controllers are found at once, twice as stiff, and too stiff for joint 2; few steps are foreseen; the
-    model is only asked about steps of the search.
+    """No board; controllers are found at once, twice as stiff, and too stiff for joint 2; few steps are foreseen; what
+    failed on the arm comes back half as stiff.
     """
 
     def tune(model: Model, *, start: np.ndarray, **options: object) -> TuningResult:
@@ -135,10 +136,14 @@ def in_no_time(rig: SimulatedRig, patch: pytest.MonkeyPatch) -> None:
         rows[2, KP] *= 10
         return tuned(model, start, rows)
 
+    def search(check: CheckOnModel, begin: np.ndarray, vary: np.ndarray, *options: object) -> np.ndarray:
+        rows = begin.copy()
+        rows[vary, KP] //= 1 if vary.all() else 2
+        return rows
+
     patch.setattr(run, "connected", rig.connected)
     patch.setattr(learn, "tune", tune)
-    patch.setattr(on_model, "PACKS", ())
-    patch.setattr(on_model, "POOR", np.inf)
+    patch.setattr(CheckOnModel, "search", search)
     steps = multi_steps()
     few = Trajectory(steps.time_s[steps.time_s < 4.0], steps.angles[steps.time_s < 4.0])
     patch.setattr(foresee, "multi_steps", lambda: few)

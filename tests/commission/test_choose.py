@@ -1,56 +1,78 @@
-"""The last combination: a joint that is restless beside the others gets softer, and then what it had before."""
+"""The last combination: joints' best count together once they were played; what fails there steps back."""
 
 from __future__ import annotations
 
-from types import SimpleNamespace
-from typing import cast
+from dataclasses import replace
 
 import numpy as np
+import pytest
 
 from greywhale.commission.arm_on_port import ArmOnPort
 from greywhale.commission.choose import confirm
-from greywhale.commission.search import KP, JointSearch
+from greywhale.commission.joint_trials import JointTrials
 from greywhale.commission.trials import Trial, Trials
-from greywhale.protocol.firmware import JOINTS
-from greywhale.protocol.table import ParameterTable
-from greywhale.simulate.controllers import controllers_of
-from tests.commission.test_search import verdict
+from tests.commission.simulated import SimulatedRig
+from tests.commission.test_trials import BETTER, WILD, play, play_before, stiffer
 
 
-class OneRestlessJoint:
-    """Trials on an arm whose joint 1 is restless beside the others with all but the controller from before."""
-
-    def __init__(self) -> None:
-        self.table = ParameterTable.defaults()
-        self.done: list[Trial] = []
-
-    def known(self) -> bool:
-        return True
-
-    def play(self, rig: ArmOnPort | None, rows: np.ndarray) -> Trial:
-        restless = bool((rows[1] != controllers_of(self.table)[1]).any())
-        verdicts = tuple(verdict(0.1, restless=restless and joint == 1) for joint in range(JOINTS))
-        trial = SimpleNamespace(rows=rows.copy(), verdicts=verdicts, bearable=not restless, name="trial")
-        self.done.append(cast(Trial, trial))
-        return self.done[-1]
-
-    def ranked(self) -> list[Trial]:
-        return [trial for trial in self.done if trial.bearable]
+def joints_of(trials: Trials) -> list[JointTrials]:
+    joints = [JointTrials() for _ in range(4)]
+    for trial in trials.done:
+        for one, row, verdict in zip(joints, trial.rows, trial.verdicts, strict=True):
+            one.add(row, verdict, trial.name)
+    return joints
 
 
-def test_a_joint_that_stays_restless_is_softened_twice_and_then_gets_its_controller_from_before() -> None:
-    trials = OneRestlessJoint()
-    before = controllers_of(trials.table)
-    stiff = before.copy()
-    stiff[:, KP] *= 2
-    searches = [JointSearch(joint, trials.table.period_ms) for joint in range(JOINTS)]
-    for search in searches:
-        search.add(before[search.joint], verdict(1.0), "before")
-        search.add(stiff[search.joint], verdict(0.1), "trial")
-    best = confirm(cast(Trials, trials), searches, lambda: cast(ArmOnPort, None))
-    stiffness = [trial.rows[1][KP] / before[1][KP] for trial in trials.done]
-    first, softer, softest, last = stiffness
-    assert first > softer > softest
-    assert last == 1.0
-    assert np.array_equal(best.rows[1], before[1])
-    assert np.array_equal(np.delete(best.rows, 1, axis=0), np.delete(stiff, 1, axis=0))
+def test_the_joints_best_are_played_together_before_they_count(trials: Trials, rig: SimulatedRig) -> None:
+    play_before(trials, rig)
+    play(trials, rig, stiffer(trials, [0, 1], BETTER))
+    play(trials, rig, stiffer(trials, [2], BETTER))
+    best = confirm(trials, joints_of(trials), lambda: rig)  # type: ignore[arg-type, return-value]
+    assert best is trials.done[3]
+    assert best.passed
+    assert np.array_equal(best.rows, stiffer(trials, [0, 1, 2], BETTER))
+
+
+@pytest.mark.slow
+def test_a_combination_that_fails_on_the_arm_is_not_chosen(trials: Trials, rig: SimulatedRig) -> None:
+    """The third joint's controller passed once; from then on the arm is another, on which it hunts."""
+    play_before(trials, rig)
+    play(trials, rig, stiffer(trials, [1], BETTER))
+    joints = joints_of(trials)
+    wild = stiffer(trials, [2], WILD)[2]
+    joints[2].add(wild, joints[1].ranked()[0].verdict, "lucky")
+    best = confirm(trials, joints, lambda: rig)  # type: ignore[arg-type, return-value]
+    assert best.passed
+    assert not np.array_equal(best.rows[2], wild)
+    assert np.array_equal(best.rows[1], stiffer(trials, [1], BETTER)[1]), "the other joint keeps its better controller"
+
+
+@pytest.mark.parametrize("ends", [False, True], ids=["another joint fails beside it", "it ends the motion itself"])
+def test_what_shakes_others_or_ends_the_motion_steps_back_alone(
+    trials: Trials, rig: SimulatedRig, monkeypatch: pytest.MonkeyPatch, ends: bool
+) -> None:
+    """Joint 1 has two better controllers, joint 2 one, and joint 3 nothing but what was before."""
+    before = play_before(trials, rig)
+    mild, strong = (stiffer(trials, [1, 2], factor) for factor in (1.5, BETTER))
+    joints = joints_of(trials)
+    for joint, rows, score in ((1, mild, 0.5), (1, strong, 0.2), (2, mild, 0.5)):
+        joints[joint].add(rows[joint], replace(before.verdicts[joint], score=score), "alone")
+
+    def play(rig: ArmOnPort | None, rows: np.ndarray) -> Trial:
+        verdicts = [replace(one, score=0.9) for one in before.verdicts]
+        if np.array_equal(rows[1], strong[1]):
+            verdicts = [replace(one, known=not ends, bearable=not ends) for one in verdicts]
+            verdicts[1 if ends else 3] = replace(verdicts[3], known=True, bearable=False)
+        trials.done.append(replace(before, rows=rows.copy(), verdicts=tuple(verdicts)))
+        return trials.done[-1]
+
+    monkeypatch.setattr(trials, "play", play)
+    best = confirm(trials, joints, lambda: rig)  # type: ignore[arg-type, return-value]
+    assert np.array_equal(best.rows[1], mild[1])
+    assert np.array_equal(best.rows[2], mild[2]) == ends
+
+
+def test_where_nothing_passes_what_was_before_is_chosen(trials: Trials, rig: SimulatedRig) -> None:
+    before = play_before(trials, rig)
+    play(trials, rig, stiffer(trials, [1], WILD))
+    assert confirm(trials, joints_of(trials), lambda: rig) is before  # type: ignore[arg-type, return-value]

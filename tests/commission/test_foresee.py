@@ -8,19 +8,17 @@ import numpy as np
 import pytest
 
 from greywhale.commission.foresee import MOST, Foresight, foresee
-from greywhale.commission.search import KI, KP
 from greywhale.commission.trials import Trials
 from greywhale.files.arm import default_arm
 from greywhale.motion import multi_steps
 from greywhale.simulate.controllers import controllers_of
-from greywhale.tune.search.training import clip_motion
-from tests.commission.simulated import ROOM, SimulatedRig
+from tests.commission.simulated import KI, KP, SimulatedRig
 
 
 @pytest.fixture
 def foresight(trials: Trials, rig: SimulatedRig) -> Foresight:
     before = trials.play_before(rig)  # type: ignore[arg-type]
-    return foresee(default_arm(), trials.table, ROOM, trials.check, before.traces, before.measured)
+    return foresee(default_arm(), trials.table, trials.check, before.traces, before.measured)
 
 
 def scaled(trials: Trials, joint: int, factor: float) -> np.ndarray:
@@ -54,7 +52,7 @@ def test_a_joint_is_not_blamed_for_its_neighbours(trials: Trials, foresight: For
 
 def test_what_is_foreseen_happens_on_the_arm(trials: Trials, rig: SimulatedRig, foresight: Foresight) -> None:
     """The arm is led along the same steps with noise of its own."""
-    motion = clip_motion(multi_steps(), ROOM.low, ROOM.high)
+    motion = multi_steps()
     rows = scaled(trials, 1, 0.5)
     errors = []
     for name, table in (("before", trials.table), ("after", trials.table_of(rows))):
@@ -69,7 +67,7 @@ def test_a_model_that_is_wrong_about_quick_moves_is_not_asked(trials: Trials, ri
     error = before.measured.error.copy()
     error[:, 1] *= 1.2
     doubted = replace(before.measured, error=error)
-    foresight = foresee(default_arm(), trials.table, ROOM, trials.check, before.traces, doubted)
+    foresight = foresee(default_arm(), trials.table, trials.check, before.traces, doubted)
     assert foresight.believed.tolist() == [True, False, True, True]
     assert foresight.clauses(scaled(trials, 1, 0.5)) == ("",) * 4
 

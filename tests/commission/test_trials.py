@@ -9,14 +9,11 @@ import numpy as np
 import pytest
 
 from greywhale.base.errors import UserError
-from greywhale.commission.arm_on_port import ArmOnPort
-from greywhale.commission.choose import confirm
 from greywhale.commission.judge import BEARABLE
 from greywhale.commission.result import CommissioningResult
-from greywhale.commission.search import KD, KI, KP, JointSearch
 from greywhale.commission.trials import Trial, Trials
 from greywhale.simulate.controllers import controllers_of
-from tests.commission.simulated import SimulatedRig
+from tests.commission.simulated import KD, KI, KP, SimulatedRig
 
 BETTER, WILD = 2.0, 40.0  # times the stiffness of before
 
@@ -108,92 +105,6 @@ def test_a_journal_that_another_version_made_is_refused_in_a_sentence(trials: Tr
     again.play_before(None)
     with pytest.raises(UserError, match="trial-01 of this commissioning was made by another version"):
         again.play(None, stiffer(trials, [1], BETTER))
-
-
-def searches_of(trials: Trials) -> list[JointSearch]:
-    searches = [JointSearch(joint, 1) for joint in range(4)]
-    for trial in trials.done:
-        for search, verdict in zip(searches, trial.verdicts, strict=True):
-            search.add(trial.rows[search.joint], verdict, trial.name)
-    return searches
-
-
-def test_the_joints_best_are_played_together_before_they_count(trials: Trials, rig: SimulatedRig) -> None:
-    play_before(trials, rig)
-    play(trials, rig, stiffer(trials, [0, 1], BETTER))
-    play(trials, rig, stiffer(trials, [2], BETTER))
-    best = confirm(trials, searches_of(trials), lambda: rig)  # type: ignore[arg-type, return-value]
-    assert best is trials.done[3]
-    assert best.passed
-    assert np.array_equal(best.rows, stiffer(trials, [0, 1, 2], BETTER))
-
-
-@pytest.mark.slow
-def test_a_combination_that_fails_on_the_arm_is_not_chosen(trials: Trials, rig: SimulatedRig) -> None:
-    """The third joint's controller passed once; from then on the arm is another, on which it hunts."""
-    play_before(trials, rig)
-    play(trials, rig, stiffer(trials, [1], BETTER))
-    searches = searches_of(trials)
-    wild = stiffer(trials, [2], WILD)[2]
-    searches[2].add(wild, searches[1].ranked()[0].verdict, "lucky")
-    best = confirm(trials, searches, lambda: rig)  # type: ignore[arg-type, return-value]
-    assert best.passed
-    assert not np.array_equal(best.rows[2], wild)
-    assert np.array_equal(best.rows[1], stiffer(trials, [1], BETTER)[1]), "the other joint keeps its better controller"
-
-
-@pytest.mark.parametrize("ends", [False, True], ids=["another joint fails beside it", "it ends the motion itself"])
-def test_what_shakes_others_or_ends_the_motion_steps_back_alone(
-    trials: Trials, rig: SimulatedRig, monkeypatch: pytest.MonkeyPatch, ends: bool
-) -> None:
-    """Joint 1 has two better controllers, joint 2 one, and joint 3 nothing but what was before."""
-    before = play_before(trials, rig)
-    mild, strong = (stiffer(trials, [1, 2], factor) for factor in (1.5, BETTER))
-    searches = searches_of(trials)
-    for joint, rows, score in ((1, mild, 0.5), (1, strong, 0.2), (2, mild, 0.5)):
-        searches[joint].add(rows[joint], replace(before.verdicts[joint], score=score), "alone")
-
-    def play(rig: ArmOnPort | None, rows: np.ndarray) -> Trial:
-        verdicts = [replace(one, score=0.9) for one in before.verdicts]
-        if np.array_equal(rows[1], strong[1]):
-            verdicts = [replace(one, known=not ends, bearable=not ends) for one in verdicts]
-            verdicts[1 if ends else 3] = replace(verdicts[3], known=True, bearable=False)
-        trials.done.append(replace(before, rows=rows.copy(), verdicts=tuple(verdicts)))
-        return trials.done[-1]
-
-    monkeypatch.setattr(trials, "play", play)
-    monkeypatch.setattr(JointSearch, "propose", lambda search: None)
-    best = confirm(trials, searches, lambda: rig)  # type: ignore[arg-type, return-value]
-    assert np.array_equal(best.rows[1], mild[1])
-    assert np.array_equal(best.rows[2], mild[2]) == ends
-
-
-def test_a_joint_that_is_restless_beside_the_others_gets_softer_before_it_falls_back(
-    trials: Trials, rig: SimulatedRig, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    before = play_before(trials, rig)
-    strong = stiffer(trials, [1, 2], BETTER)
-    searches = searches_of(trials)
-    for joint in (1, 2):
-        searches[joint].add(strong[joint], replace(before.verdicts[joint], score=0.2), "alone")
-
-    def play(rig: ArmOnPort | None, rows: np.ndarray) -> Trial:
-        verdicts = [replace(one, score=0.3) for one in before.verdicts]
-        if np.array_equal(rows[1], strong[1]):
-            verdicts[1] = replace(verdicts[1], faults=("it rattles",), restless=True, excess=1.3, bearable=False)
-        trials.done.append(replace(before, rows=rows.copy(), verdicts=tuple(verdicts)))
-        return trials.done[-1]
-
-    monkeypatch.setattr(trials, "play", play)
-    best = confirm(trials, searches, lambda: rig)  # type: ignore[arg-type, return-value]
-    assert np.array_equal(best.rows[2], strong[2])
-    assert before.rows[1, KP] < best.rows[1, KP] < strong[1, KP]
-
-
-def test_where_nothing_passes_what_was_before_is_chosen(trials: Trials, rig: SimulatedRig) -> None:
-    before = play_before(trials, rig)
-    play(trials, rig, stiffer(trials, [1], WILD))
-    assert confirm(trials, searches_of(trials), lambda: rig) is before  # type: ignore[arg-type, return-value]
 
 
 def test_controllers_from_before_that_the_board_stops_are_refused(trials: Trials, rig: SimulatedRig) -> None:

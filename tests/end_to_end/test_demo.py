@@ -12,7 +12,7 @@ from greywhale.arm.parameters import JOINT_NAMES, Stops
 from greywhale.base.errors import UserError
 from greywhale.cli.story import BenchProcess, DemoOptions, DemoResult, run, story
 from greywhale.cli.story.recorder import record_motion
-from greywhale.commission import motions, on_model
+from greywhale.commission import motions, search
 from greywhale.files.arm import default_arm
 from greywhale.files.leader import save_leader
 from greywhale.files.log import Log
@@ -33,8 +33,8 @@ def test_the_demo_tells_its_story_and_proves_its_controllers_on_the_arm(
     shorten(monkeypatch)
     judge_nothing(monkeypatch)
     monkeypatch.setattr(story, "PROVING_TRIALS", 1)
-    monkeypatch.setattr(on_model, "PACKS", ((0.1, 12),))
-    monkeypatch.setattr(on_model, "POOR", 1e9)
+    monkeypatch.setattr(search, "PACKS", ((0.1, 12),))
+    monkeypatch.setattr(search, "POOR", 1e9)
     short = {"REACHES_S": 2.0, "HOLD_S": 0.5, "SLOW_S": 1.0, "PAUSE_S": 0.3, "MOVES": (0.5, -0.9)}
     short |= {"SMALL_RAD": (0.1, 0.0), "STILL_SHARES": (0.6, 0.0), "STILL_HOLD_S": 0.3}
     for name, value in short.items():

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
+Flags = NDArray[np.bool_]
 Integers = NDArray[np.int32]
 Controllers = NDArray[np.int32]  # (4, 13), or (n, 4, 13) for n sets: columns as in `protocol.table.CONTROLLER_COLUMNS`
 

@@ -12,13 +12,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from greywhale.arm import ArmParameters
 from greywhale.arm.plants import plant_row
-from greywhale.base.types import Controllers, Floats
+from greywhale.base.types import Controllers, Flags, Floats
 from greywhale.commission.measures import Measures, Traces, measure
-from greywhale.commission.motions import PARTS, Check, JointRange
+from greywhale.commission.motions import PARTS, Check
 from greywhale.commission.predict import predict
 from greywhale.motion import multi_steps
 from greywhale.motion.swings import unrest
@@ -26,7 +25,7 @@ from greywhale.protocol.firmware import JOINTS
 from greywhale.protocol.table import ParameterTable
 from greywhale.simulate import Experiment
 from greywhale.simulate.controllers import controllers_of
-from greywhale.tune.search.training import clip_motion
+from greywhale.tune.search.training import clip_motion, reach
 
 # Of the error before, at most so much: the rest of the way to 1 is the model's own error.
 MOST = 0.99
@@ -44,8 +43,7 @@ class Foresight:
     plant: Floats
     before: Controllers
     error: Floats  # (4,) rad²
-    unrest: Floats  # (4,) rad rms, between the steps
-    believed: npt.NDArray[np.bool_]
+    believed: Flags
 
     def ratios(self, rows: Controllers) -> Floats:
         """(4,): each joint's error on steps with controllers (4, 13), as a share of that before."""
@@ -53,12 +51,15 @@ class Foresight:
         return found
 
     def estimate(self, rows: Controllers, worse: Floats) -> tuple[Floats, Floats]:
-        """The same (n, 4) of many (n, 4, 13), in single precision, and the unrest (n, 4) between the steps, rad rms, on
-        the model or on a `worse` arm (1, columns), whichever is larger.
+        """The same (n, 4) of many (n, 4, 13), in single precision, and the unrest (2, n, 4) between the steps, rad rms,
+        on the model and on a `worse` arm (1, columns).
         """
         known, other = (self.experiment.run(rows, plant, every=1) for plant in (self.plant, worse))
-        restless = [[_unrest(self.experiment, angles) for angles in found.angles] for found in (known, other)]
-        return known.mse / np.maximum(self.error, LEAST), np.max(restless, axis=0)
+        restless = [
+            [np.nan_to_num(unrest(self.experiment.leader, angles.astype(np.float64))) for angles in found.angles]
+            for found in (known, other)
+        ]
+        return known.mse / np.maximum(self.error, LEAST), np.array(restless)
 
     def clauses(self, rows: Controllers) -> tuple[str, ...]:
         """(4): what speaks against each joint's controller, "" for nothing; a controller from before always passes."""
@@ -79,19 +80,14 @@ class Foresight:
         return ratio < float(self.ratios(reverted)[joint])
 
 
-def foresee(
-    arm: ArmParameters, table: ParameterTable, room: JointRange, check: Check, traces: Traces, measured: Measures
-) -> Foresight:
-    """What a model of this arm foresees; `traces` and `measured` are those of the check before, with `table`."""
+def foresee(arm: ArmParameters, table: ParameterTable, check: Check, traces: Traces, measured: Measures) -> Foresight:
+    """What a model of this arm foresees; `traces` and `measured` are those of the check before, with `table`. The steps
+    go wherever the board's limits let the arm go: after the commissioning a hand will.
+    """
     moves = PARTS.index("moves")
     predicted = measure(predict(arm, table, traces)[0], check, table.supply_v).error[moves]
     believed = np.abs(predicted / np.maximum(measured.error[moves], LEAST) - 1.0) <= BELIEVED
-    motion = clip_motion(multi_steps(), room.low, room.high)
-    experiment = Experiment(motion, arm, table=table, seed=SEED)
     plant, before = plant_row(arm)[None], controllers_of(table)
+    experiment = Experiment(clip_motion(multi_steps(), *reach(arm, table, plant)), arm, table=table, seed=SEED)
     found = experiment.run_exact(before[None], plant, every=1)
-    return Foresight(experiment, plant, before, found.mse[0], _unrest(experiment, found.angles[0]), believed)
-
-
-def _unrest(experiment: Experiment, angles: npt.NDArray[np.float32]) -> Floats:
-    return np.nan_to_num(unrest(experiment.leader, angles.astype(np.float64)))
+    return Foresight(experiment, plant, before, found.mse[0], believed)

@@ -6,18 +6,17 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
-from greywhale.base.types import Floats
+from greywhale.base.types import Flags, Floats
 from greywhale.commission.measures import HAND_LED, HOLDING, Measures
 from greywhale.commission.motions import PARTS
-from greywhale.motion.swings import CHATTER_AT_REST_HZ
+from greywhale.motion.swings import CHATTER_AT_REST_HZ, RATTLE_MOVING_RAD
 from greywhale.protocol.firmware import JOINTS
 
 # Unrest and rattling may grow by these factors, but not above this (rad rms). Below the second number nobody sees them,
 # whatever they were. Other motions show more unrest than the check: so its limit keeps clear of twice what it was.
 MOST_UNREST, LEAST_UNREST = 0.005, 0.0015
-MOST_RATTLE, LEAST_RATTLE = 0.005, 0.003
+LEAST_RATTLE = 0.003
 UNREST_GROWTH, RATTLE_GROWTH = 1.5, 2.0
 VOLTAGE_GROWTH = 1.1  # of chatter and ripple, which differ by a few per cent with the same controllers
 # Unrest, rattling, chatter and ripple differ from trial to trial, also with the same controllers. Up to so many times
@@ -57,7 +56,7 @@ class Limits:
     error: Floats
 
     @classmethod
-    def of(cls, before: Measures, kept: npt.NDArray[np.bool_], quiet_v: float) -> Limits:
+    def of(cls, before: Measures, kept: Flags, quiet_v: float) -> Limits:
         """What was there before is never too much, nor is ripple of `quiet_v`. `kept` (4,) marks joints whose
         controllers are those from before.
         """
@@ -69,10 +68,10 @@ class Limits:
         least = np.full((len(PARTS), 1), LEAST_UNREST)
         growth[PUSHED], least[PUSHED] = KEPT_GROWTH, LEAST_PUSHED
         least_rattle = np.full((len(PARTS), 1), LEAST_RATTLE)
-        least_rattle[SLOW] = MOST_RATTLE
+        least_rattle[SLOW] = RATTLE_MOVING_RAD
         return cls(
             unrest=_allowed(before.unrest, lambda known: _grow_beyond_noise(known, growth), least, MOST_UNREST),
-            rattle=_allowed(before.rattle, lambda known: RATTLE_GROWTH * known, least_rattle, MOST_RATTLE),
+            rattle=_allowed(before.rattle, lambda known: RATTLE_GROWTH * known, least_rattle, RATTLE_MOVING_RAD),
             chatter=np.maximum(CHATTER_AT_REST_HZ, VOLTAGE_GROWTH * np.nan_to_num(before.chatter)),
             ripple=np.maximum(quiet_v, VOLTAGE_GROWTH * np.nan_to_num(before.ripple)),
             error=error,

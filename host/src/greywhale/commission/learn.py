@@ -42,7 +42,7 @@ class LearntController:
 
 
 @dataclass(frozen=True)
-class Proposal:
+class UnvalidatedTuning:
     """A model that is not validated yet (None: it was given), and the controllers tuned on it."""
 
     model: IdentificationResult | None
@@ -50,8 +50,8 @@ class Proposal:
 
 
 @dataclass(frozen=True)
-class Lesson:
-    """What one round learns from. It is learnt once: the journal keeps it."""
+class RoundTuner:
+    """Identifies and tunes for one round, from what is known by then. It does so once: the journal keeps it."""
 
     book: CommissioningJournal
     number: int  # of the round
@@ -72,7 +72,7 @@ class Lesson:
         """Whether the journal has it."""
         return self.book.get(self._name) is not None
 
-    def propose(self, report: NotedProgress) -> Proposal | None:
+    def tune(self, report: NotedProgress) -> UnvalidatedTuning | None:
         """Identify the arm and tune for it; None where the journal has both."""
         if self.known():
             return None
@@ -89,14 +89,14 @@ class Lesson:
         )
         if not tuning.complete:
             raise KeyboardInterrupt
-        return Proposal(found, tuning)
+        return UnvalidatedTuning(found, tuning)
 
-    def finish(self, proposal: Proposal | None, validate: Evidence) -> tuple[Model, LearntController]:
+    def validate(self, tuned: UnvalidatedTuning | None, evidence: Evidence) -> tuple[Model, LearntController]:
         """Validate the model and write down what was learnt."""
-        if proposal is not None:
-            if proposal.model is not None:
-                validated(proposal.model, validate.logs, validate.tables).save(self.path)
-            tuning = replace(proposal.tuning, model=self._with_failures(self._model()))
+        if tuned is not None:
+            if tuned.model is not None:
+                validated(tuned.model, evidence.logs, evidence.tables).save(self.path)
+            tuning = replace(tuned.tuning, model=self._with_failures(self._model()))
             save(tuning, self._controllers)
             self.book.note(self._name, {"steady": tuning.steady, "doubts": list(tuning.model.doubts)})
         model, facts = self._model(), self.book.get(self._name)

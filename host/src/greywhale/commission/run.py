@@ -12,22 +12,21 @@ from contextlib import ExitStack, contextmanager
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 
 from greywhale.base.errors import UserError
 from greywhale.base.side_job import SideJob
-from greywhale.base.types import Controllers, NotedProgress, show_no_progress
+from greywhale.base.types import Controllers, Flags, NotedProgress, show_no_progress
 from greywhale.commission import learn, start
 from greywhale.commission.arm_on_port import ArmOnPort, connected
 from greywhale.commission.choose import confirm
 from greywhale.commission.evidence import Evidence, failing_plants, to_fit, to_validate
 from greywhale.commission.foresee import foresee
+from greywhale.commission.joint_trials import JointTrials
 from greywhale.commission.journal import CommissioningJournal
 from greywhale.commission.motions import JointRange, check_motion
-from greywhale.commission.on_model import CheckOnModel
 from greywhale.commission.request import CommissioningRequest
 from greywhale.commission.result import CommissioningResult, Round, errors_beside, predict_trial
-from greywhale.commission.search import MOST_SOFTER, JointSearch, Row
+from greywhale.commission.search import CheckOnModel
 from greywhale.commission.trials import Trials
 from greywhale.files.arm import load_arm
 from greywhale.files.leader import load_leader, save_leader
@@ -46,8 +45,8 @@ DESIGN_BUDGET = 150  # the last evaluations of a search for a motion would gain 
 # Another round follows while a joint's best is above this share of before.
 WANTING = 0.5
 # A round's trials end when the joints' best together have this share of the error from before, or gained less than so
-# much in so many trials. A restless joint may need as many until it rests.
-GOOD, LEAST_GAIN, PATIENCE = 0.04, 0.1, MOST_SOFTER
+# much in so many trials.
+GOOD, LEAST_GAIN, PATIENCE = 0.04, 0.1, 3
 
 
 def is_enough(hoped: Sequence[float]) -> bool:
@@ -72,7 +71,7 @@ class _Commissioning:
             for doubt in doubt_other_arm(load_arm(options.model), self.nominal, options.arm_file):
                 raise UserError(f"{options.model}: {doubt.reason}; {doubt.remedy}.")
         self.rounds: list[Round] = []
-        self.searches: list[JointSearch] = []
+        self.joints: list[JointTrials] = []
         self.before: ParameterTable | None = None
         self.stage = "before"
         self.trying = ""  # which trial of a round runs, for the reports
@@ -97,7 +96,7 @@ class _Commissioning:
 
     def _confirm(self, arm: Callable[[], ArmOnPort]) -> CommissioningResult:
         self.stage = "confirming"
-        best = confirm(self.trials, self.searches, arm)
+        best = confirm(self.trials, self.joints, arm)
         if self.book.get("end") is None:
             arm().keep(best.table)
             self.book.note("end", {"best": best.name})
@@ -108,11 +107,11 @@ class _Commissioning:
         with ExitStack() as stack:
             with self._arm() as arm:
                 self._find_room(arm)
-                lesson = self._lesson(1, None if self.options.model else to_fit(self._excite(arm), self.trials))
-                job = stack.enter_context(SideJob(lesson.propose, self._report))
+                tuner = self._tuner(1, None if self.options.model else to_fit(self._excite(arm), self.trials))
+                job = stack.enter_context(SideJob(tuner.tune, self._report))
                 self._play_before(arm)
             self.stage = "round 1"
-            return self._finish(lesson, job.result())
+            return self._finish(tuner, job.result())
 
     def _find_room(self, arm: Callable[[], ArmOnPort]) -> None:
         """Refuse what must not move, find out where the joints may go, and design the excitation if it comes next."""
@@ -144,9 +143,9 @@ class _Commissioning:
         trials, options = self.trials, self.options
         first = trials.play_before(None if trials.known() else arm())
         rows = controllers_of(trials.table)
-        self.searches = [JointSearch(joint, trials.table.period_ms) for joint in range(JOINTS)]
-        for search, verdict in zip(self.searches, first.verdicts, strict=True):
-            search.add(rows[search.joint], verdict, first.name)
+        self.joints = [JointTrials() for _ in range(JOINTS)]
+        for one, row, verdict in zip(self.joints, rows, first.verdicts, strict=True):
+            one.add(row, verdict, first.name)
         if options.model is not None:
             learn.refuse_other_arm(load_arm(options.model), str(options.model), first, trials.table)
 
@@ -155,11 +154,11 @@ class _Commissioning:
         with self._arm() as arm:
             fit = to_fit(self._excite(arm), self.trials)
         self.stage = f"round {number}"
-        lesson = self._lesson(number, fit)
-        return self._finish(lesson, lesson.propose(self._report))
+        tuner = self._tuner(number, fit)
+        return self._finish(tuner, tuner.tune(self._report))
 
-    def _lesson(self, number: int, fit: Evidence | None) -> learn.Lesson:
-        return learn.Lesson(
+    def _tuner(self, number: int, fit: Evidence | None) -> learn.RoundTuner:
+        return learn.RoundTuner(
             self.book,
             number,
             self.options,
@@ -170,23 +169,23 @@ class _Commissioning:
             failing=lambda arm: failing_plants(arm, self.trials),
         )
 
-    def _finish(self, lesson: learn.Lesson, proposal: learn.Proposal | None) -> learn.LearntController:
+    def _finish(self, tuner: learn.RoundTuner, tuned: learn.UnvalidatedTuning | None) -> learn.LearntController:
         """What a round learnt, with controllers that its model prefers on the check."""
         trials = self.trials
-        model, learnt = lesson.finish(proposal, to_validate(trials))
+        model, learnt = tuner.validate(tuned, to_validate(trials))
         trials.foresight = foresight = foresee(
-            model.arm, trials.table, self.room, trials.check, trials.before.traces, trials.before.measured
+            model.arm, trials.table, trials.check, trials.before.traces, trials.before.measured
         )
         trials.others |= learnt.others
         self.on_model = CheckOnModel.of(model, trials, foresight, self.options.seed, self.options.threads)
-        return replace(learnt, controllers=self._search_on_model(lesson.number, learnt.controllers))
+        found = self._search_on_model(f"on-model-{tuner.number}", learnt.controllers, np.ones(JOINTS, dtype=bool))
+        return replace(learnt, controllers=found)
 
-    def _search_on_model(self, number: int, tuned: Controllers) -> Controllers:
-        """Controllers around the tuned ones that the round's model prefers on the check."""
-        name = f"on-model-{number}"
+    def _search_on_model(self, name: str, begin: Controllers, vary: Flags) -> Controllers:
+        """Controllers around others that the round's model prefers on the check; noted in the journal."""
         facts = self.book.get(name)
         if facts is None:
-            found = self.on_model.search(tuned, self.options.seed, self._report)
+            found = self.on_model.search(begin, vary, self.options.seed, self._report)
             facts = {"controllers": found.tolist()}
             self.book.note(name, facts)
         return np.array(facts["controllers"], dtype=np.int32)
@@ -218,56 +217,38 @@ class _Commissioning:
         return read_evidence(path)
 
     def _try(self, arm: Callable[[], ArmOnPort], learnt: learn.LearntController) -> None:
-        """Try a round's controllers on the arm, then vary what failed or follows poorly."""
-        trials, searches = self.trials, self.searches
-        wanted: list[npt.NDArray[np.int32] | None] = [learnt.controllers[search.joint] for search in searches]
-        for search in searches:
-            search.begin()
+        """Try a round's controllers on the arm; those that fail are searched again with what the arm showed."""
+        trials, rows = self.trials, learnt.controllers
         hoped: list[float] = []
         for number in range(1, self.options.trials + 1):
             self.trying = f", trial {number} of {self.options.trials} at most"
-            rows = self._best_rows()
-            for joint, row in enumerate(wanted):
-                if row is not None:
-                    rows[joint] = row
             trial = trials.play(None if trials.known() else arm(), rows)
             self.tried = errors_beside(predict_trial(learnt.arm, trial, trials.check), trial)
-            for search, verdict in zip(searches, trial.verdicts, strict=True):
-                joint = search.joint
-                if wanted[joint] is not None and verdict.known:
-                    search.add(rows[joint], verdict, trial.name)
-                    wanted[joint] = search.propose(self._promises(joint))
-            hoped.append(sum(search.best.verdict.share * search.best.verdict.value for search in searches))
-            if all(row is None for row in wanted) or is_enough(hoped):
+            for one, row, verdict in zip(self.joints, rows, trial.verdicts, strict=True):
+                if verdict.known:
+                    one.add(row, verdict, trial.name)
+            hoped.append(sum(one.best.verdict.share * one.best.verdict.value for one in self.joints))
+            failed = np.array([verdict.known and not verdict.passed for verdict in trial.verdicts])
+            if not failed.any() or is_enough(hoped):
+                break
+            self.on_model = self.on_model.corrected(trial)
+            passed = np.array([verdict.passed for verdict in trial.verdicts])
+            begin = np.where(passed[:, None], self._best_rows(), rows)
+            rows = self._search_on_model(f"after-{trial.name}", begin, failed)
+            if any(np.array_equal(rows, known.rows) for known in trials.done):
                 break
         self.trying = ""
-
-    def _promises(self, joint: int) -> Callable[[Row], bool]:
-        """Whether the model has nothing against a joint's controller, beside the best of the others. After a trial that
-        can be borne it must also expect a tenth less error; what a model got wrong, only the arm can tell.
-        """
-
-        def promises(row: Row) -> bool:
-            best = self._best_rows()
-            rows = best.copy()
-            rows[joint] = row
-            if self.trials.foresight is not None and self.trials.foresight.clauses(rows)[joint]:
-                return False
-            last = self.searches[joint].tried[-1].verdict
-            return not last.bearable or self.on_model.promises(best, joint, row)
-
-        return promises
 
     def _best_rows(self) -> Controllers:
         """Every joint's best so far, of whatever trial."""
         rows = controllers_of(self.trials.table).copy()
-        for search in self.searches:
-            rows[search.joint] = search.best.row
+        for joint, one in enumerate(self.joints):
+            rows[joint] = one.best.row
         return rows
 
     def _is_wanting(self) -> bool:
         """Whether another round may help: a joint follows little better than before."""
-        return any(search.best.verdict.value > WANTING for search in self.searches)
+        return any(one.best.verdict.value > WANTING for one in self.joints)
 
     def _report(self, what: str, fraction: float, note: str = "") -> None:
         self.report(f"{self.stage}{self.trying}: {what}", fraction, note or self.tried)

@@ -1,160 +1,226 @@
-"""The search on the arm itself, joint by joint: a restless controller gets softer, any other is varied step by step.
+"""The search for a set of controllers on a round's model, along the check, before the arm moves.
 
-A model tells where to begin. What it does not know (play, a slow wiper) shows in measures on the arm only, and mostly
-asks for the same: less gain, more damping, another integral part.
+The tuning does not know the check and its limits; this search does, and its trials cost no time of the arm. It varies
+the scaling factors of the tuned controllers by the tuning's own optimiser. What a trial shows beyond the model corrects
+the next search. A joint costs the root of its error in what a hand leads, as a share of that before, and more
+
+- beyond a share of what the check allows, and where it hunts on a worse arm: the loosest gears that the recordings
+  allow, more loop gain, slower potentiometers;
+- where it would follow steps hardly better than before, if the model knows the joint's steps, swing between them,
+  overshoot in moves, or hiss after them;
+- for the tuning's margins, without twice the loop gain and softer teeth, for which the worse arm stands.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
 
 import numpy as np
-import numpy.typing as npt
 
-from greywhale.commission.judge import TrialVerdict
+from greywhale.arm.parameters import with_usual_noise
+from greywhale.arm.plants import columns, plant_row
+from greywhale.base.types import Controllers, Flags, Floats, NotedProgress
+from greywhale.commission.foresee import Foresight
+from greywhale.commission.judge import LED, RESTLESS, Limits
+from greywhale.commission.measures import Measures, measure
+from greywhale.commission.predict import LedModel
+from greywhale.commission.trials import Trial, Trials
 from greywhale.fuzzy.settings import GAIN_UNIT
-from greywhale.protocol import schema
-from greywhale.simulate import CONTROLLER_COLUMNS
-from greywhale.tune.search.space import largest_ki
+from greywhale.motion.swings import QUIET_SHARE
+from greywhale.protocol.firmware import JOINTS
+from greywhale.protocol.joints import unused
+from greywhale.protocol.table import CONTROLLER_COLUMNS
+from greywhale.simulate.controllers import controllers_of
+from greywhale.tune.default import METHOD
+from greywhale.tune.judge.margins import TEETH, TWICE, Margins, loosest_plant, penalty, with_gain
+from greywhale.tune.model import Model
+from greywhale.tune.search import lockstep
+from greywhale.tune.search.journal import TuningJournal
+from greywhale.tune.search.lockstep import SearchState
+from greywhale.tune.search.space import Space
 
-Row = npt.NDArray[np.int32]
-
-KP, KD, KI = (CONTROLLER_COLUMNS.index(name) for name in ("kp", "kd", "ki"))
-# A restless joint gets less stiffness, relatively more damping, and hardly any integral part that could hunt; one that
-# only chatters gets less damping.
-SOFTER = {KP: 0.5, KD: 0.8, KI: 0.1}
-FIRST_SOFTER = {KP: 0.5, KD: 1.2, KI: 0.1}
-QUIETER = {KD: 0.6}
-MOST_SOFTER = 3
-# From so many times its limit on, the step is whole; for less it is a part of it, as a power, but never less than this.
-FAR, GENTLY = 4.0, 0.35
-# The steps of the search: stiffer, more integral part against friction, more damping, softer, less integral part.
-STEPS: tuple[dict[int, float], ...] = ({KP: 1.8, KD: 1.45}, {KI: 6.0}, {KD: 1.4}, {KP: 0.7}, {KI: 0.15})
-# A step that follows better, but is restless by less than so many times, is made again half as far, at most twice.
-HARDLY, HALF, HALVES = 2.5, 0.5, 2
-LEAST_KI, MOST_KI = 30.0, 300.0  # V/(rad s), where a step enlarges it; less does next to nothing in a move
+# The searches, each around the best so far: the width of the first pack, as a share of the box, and the sets to try.
+PACKS = ((0.05, 96), (0.05, 64), (0.03, 64), (0.02, 64))
+# What the worse arm has more of: loop gain, and lag of the potentiometers (s).
+GAIN, LAG_S = 1.3, 1e-3
+# The shares of the check's limits that a set on the model may take up, and of the error on steps and the ripple before.
+# An arm rattles 1.1 to 2.0 times as much as its model, and hisses 1.0 to 1.1 times.
+AIMS = {"unrest": 0.7, "rattle": 0.5, "chatter": 0.8, "error": 0.8}
+AIM_OF_BEFORE = 0.95
+# The share of the arm's limits after a trial, which tells by how much the model is wrong; the least part of an aim.
+SURER_AIM, LEAST_OF_AIM = 0.85, 0.1
+STILL_RAD = 0.002  # rms between steps, or what was there before: the check has few poses to hunt at
+OVERSHOOT = 15.0  # % of a step, at most, or as much as before
+# A joint that keeps more of its error than this (rms) is searched once more: the tuned fuzzy sets may be a dead end.
+POOR = 0.5
+PRICE = 2.0  # of being beyond a limit by all of it
+STEPS_PRICE = 20.0  # the same for steps: with 4 % more of them a joint does not pass, whatever the arm does
+HOST_LED = 0.6  # of the ripple under a leader's hand is there while a host leads, without the leader's noise
+NONE = np.zeros(JOINTS, dtype=bool)
+LEAST_KI = 30.0  # V/(rad s), where the search begins anew
+NO_LIMIT_V = np.full(JOINTS, np.inf)  # of ripple in the margins' rests: the check's is limited
+LEAST_RAD2 = 1e-9
+KI, KU, CE_TICKS = (CONTROLLER_COLUMNS.index(name) for name in ("ki", "ku_mv", "ce_ticks"))
 
 
 @dataclass(frozen=True)
-class TriedController:
-    """A joint's controller (12,) and what the arm said about it; `trial` is where that was measured."""
+class CheckOnModel:
+    """What a model says about controllers, as costs of each joint."""
 
-    row: Row
-    verdict: TrialVerdict
-    trial: str
+    arm: LedModel
+    plants: Floats  # (2, columns): the model, and a worse arm
+    trials: Trials
+    foresight: Foresight
+    margins: Margins
+    limits: Limits  # of the arm
+    aims: Limits  # what a set may show on the model
+    led: Floats  # (4,) rad², the model's error before in what a hand leads
+    swings: Floats  # (2, 4) rad rms, between steps
+    overshoot: Floats  # (4,) % of a step, in the check's moves
 
+    @classmethod
+    def of(cls, model: Model, trials: Trials, foresight: Foresight, seed: int, threads: int) -> CheckOnModel:
+        """For the trials to come, after that of the controllers from before."""
+        arm, table, before = with_usual_noise(model.arm), trials.table.with_raw(trials.others), trials.before
+        plants, running = np.vstack([plant_row(arm), loosest_plant(model.plants)]), controllers_of(table)[None]
+        margins = Margins(arm, table, plants, threads=threads, searching=True, seed=seed)
+        plants = np.vstack([plants[:1], _worsen(plants[1:])])
+        led = LedModel(arm, table, before.traces)
+        (traces,) = led.run(running, plants[:1])
+        known = measure(traces, trials.check, table.supply_v)
+        quiet_v = QUIET_SHARE * table.supply_v
+        limits, own = (Limits.of(one, NONE, quiet_v) for one in (before.measured, known))
+        return cls(
+            arm=led,
+            plants=plants,
+            trials=trials,
+            foresight=foresight,
+            margins=margins,
+            limits=limits,
+            aims=Limits(
+                unrest=AIMS["unrest"] * limits.unrest,
+                rattle=AIMS["rattle"] * limits.rattle,
+                chatter=AIMS["chatter"] * limits.chatter,
+                ripple=np.fmax(AIM_OF_BEFORE * known.ripple, HOST_LED * quiet_v),
+                error=AIMS["error"] * own.error,
+            ),
+            led=known.error[LED].sum(axis=0),
+            swings=np.maximum(foresight.estimate(running, plants[1:])[1][:, 0], STILL_RAD),
+            overshoot=np.fmax(known.worst("overshoot"), OVERSHOOT),
+        )
 
-def _rank(one: TriedController) -> tuple[bool, float]:
-    """What can be borne comes first, then what follows best; a joint that another one stopped has no score."""
-    score = one.verdict.value if one.verdict.bearable else one.verdict.score
-    return not one.verdict.bearable, score if np.isfinite(score) else np.inf
+    def corrected(self, trial: Trial) -> CheckOnModel:
+        """The same after a trial: what was too much on the arm, the model may show less of, by the same ratio."""
+        (known,) = self._measured(trial.rows[None], 0)
+        aims: dict[str, Floats] = {}
+        for name in (*RESTLESS, "error"):
+            aim, shown = getattr(self.aims, name), getattr(trial.measured, name) / getattr(self.limits, name)
+            ratio = np.divide(getattr(known, name), shown, out=np.full_like(shown, np.inf), where=shown > SURER_AIM)
+            aims[name] = np.minimum(aim, np.maximum(SURER_AIM * ratio, LEAST_OF_AIM * aim))
+        aims["unrest"][:, [np.isinf(verdict.excess) for verdict in trial.verdicts]] /= 2.0
+        return replace(self, aims=Limits(**aims))
 
+    def costs(self, controllers: Controllers) -> Floats:
+        """(n, 4) of controllers (n, 4, 13)."""
+        errors, prices = self._judged(controllers)
+        return errors + prices
 
-@dataclass
-class JointSearch:
-    """One joint's controllers in the order of their trials."""
+    def _judged(self, controllers: Controllers) -> tuple[Floats, Floats]:
+        """The error in what a hand leads, rms as a share of that before, and what the rest costs, (n, 4) each."""
+        unrest = self.margins.unrest(controllers)
+        near = {name: found for name, found in unrest.items() if name not in (TWICE, TEETH)}
+        prices = penalty(near, NO_LIMIT_V)
+        ratios, restless = self.foresight.estimate(controllers, self.plants[1:])
+        prices += PRICE * np.maximum(restless / self.swings[:, None] - 1.0, 0.0).max(axis=0)
+        prices += STEPS_PRICE * np.where(self.foresight.believed, np.maximum(ratios / AIM_OF_BEFORE - 1.0, 0.0), 0.0)
+        errors = np.empty_like(prices)
+        known, worse = self._measured(controllers, 0), self._measured(controllers, 1, only_unrest=True)
+        for row, (one, other) in enumerate(zip(known, worse, strict=True)):
+            errors[row] = np.sqrt(one.error[LED].sum(axis=0) / np.maximum(self.led, LEAST_RAD2))
+            prices[row] += PRICE * (self._beyond(one, (*RESTLESS, "error")) + self._beyond(other, ["unrest"]))
+            prices[row] += PRICE * np.maximum(np.nan_to_num(one.worst("overshoot")) / self.overshoot - 1.0, 0.0)
+        return errors, prices
 
-    joint: int
-    period_ms: int
-    tried: list[TriedController] = field(default_factory=list)
-    _softened: int = 0
-    _step: int = 0
-    _from: Row | None = None
-    _factors: dict[int, float] | None = None  # of the step that is on trial
-    _halved: int = 0  # how often that step was made again half as far
+    def _measured(self, controllers: Controllers, plant: int, *, only_unrest: bool = False) -> Iterator[Measures]:
+        """What each of controllers (n, 4, 13) would show in the check on one of the plants."""
+        for traces in self.arm.run(controllers, self.plants[plant : plant + 1]):
+            yield measure(traces, self.trials.check, self.trials.table.supply_v, only_unrest=only_unrest)
 
-    @property
-    def best(self) -> TriedController:
-        """The best that passed or can be borne, as the controller from before always can."""
-        return self.ranked()[0]
+    def _beyond(self, measured: Measures, names: Iterable[str]) -> Floats:
+        """By what share each joint is beyond what the model may show of these measures, together: (4,)."""
+        beyond: Floats = np.zeros(JOINTS)
+        for name in names:
+            share = np.nan_to_num(getattr(measured, name) / getattr(self.aims, name)).max(axis=0)
+            beyond += np.maximum(share - 1.0, 0.0)
+        return beyond
 
-    def ranked(self) -> list[TriedController]:
-        """All that passed or can be borne, the best first."""
-        return sorted((one for one in self.tried if one.verdict.bearable), key=_rank)
+    def search(self, begin: Controllers, vary: Flags, seed: int, report: NotedProgress) -> Controllers:
+        """The best found around controllers (4, 13), all joints together but for those that `vary` (4,) leaves out."""
+        before = controllers_of(self.trials.table)
+        best = self._search_around(begin, vary, seed, report)
+        poor = vary & (self._judged(best[None])[0][0] > POOR)
+        if poor.any():
+            again = best.copy()
+            again[poor] = _with_sets_of(before, begin)[poor]
+            best = self._best_together(best, self._search_around(again, vary, seed, report, "searching once more"))
+        idle = list(unused(self.trials.table.joints_in_use))
+        best[idle] = before[idle]
+        return best
 
-    def add(self, row: Row, verdict: TrialVerdict, trial: str) -> None:
-        """Note a judged controller."""
-        self.tried.append(TriedController(row.copy(), verdict, trial))
+    def _search_around(
+        self, begin: Controllers, vary: Flags, seed: int, report: NotedProgress, what: str = "searching on the model"
+    ) -> Controllers:
+        table, journal = self.trials.table, TuningJournal(None, {})
+        found, best = SearchState.nothing(begin), begin.copy()
+        whole = sum(sets for _, sets in PACKS)
 
-    def propose(self, promises: Callable[[Row], bool] = lambda row: True) -> Row | None:
-        """The next controller to try; None where there is nothing left to vary.
+        def costs(controllers: Controllers) -> Floats:
+            return self.costs(np.where(vary[:, None], controllers, begin))
 
-        Of the steps of the search, those that promise nothing are left out; a restless joint gets softer in any case.
+        for number, (sigma, sets) in enumerate(PACKS):
+            if number:
+                lockstep.try_again(costs, found, journal, "check")
+            lockstep.search_in_lockstep(
+                Space.default("sf", found.best, table["supply_mv"], table.period_ms),
+                costs,
+                found,
+                journal,
+                stage="check",
+                method=METHOD,
+                budget=sets // len(lockstep.TURNS),
+                seed=(seed, number),
+                start=found.best,
+                tick=lambda state: report(what, min(1.0, state.evaluations / whole)),
+                groups=lockstep.TURNS,
+                sigma=sigma,
+            )
+            best = self._best_together(best, np.where(vary[:, None], found.best, begin))
+        return best
+
+    def _best_together(self, known: Controllers, new: Controllers) -> Controllers:
+        """The better of two sets, or one of them with a joint of the other. Each joint's best was found beside other
+        neighbours than those it has in the end.
         """
-        if self.tried and self.tried[-1].verdict.restless and self._softened < MOST_SOFTER:
-            softer = self._soften(self.tried[-1])
-            if softer is not None:
-                return softer
-        self._softened = MOST_SOFTER
-        calm = [one for one in self.tried if one.verdict.bearable or not one.verdict.restless]
-        if not calm:
-            return None
-        centre = min(calm, key=_rank)
-        halved = self._halve(centre)
-        if halved is not None and self._is_new(halved) and promises(halved):
-            return halved
-        if self._from is None or not np.array_equal(self._from, centre.row):
-            if self._from is not None and self._halved == 0:
-                # What helped once may help twice, but not what helped only half as far.
-                self._step = max(0, self._step - 1)
-            self._from = centre.row
-        while self._step < len(STEPS):
-            self._factors, self._halved = STEPS[self._step], 0
-            row = self._scaled(centre.row, self._factors)
-            self._step += 1
-            if row is not None and self._is_new(row) and promises(row):
-                return row
-        return None
+        sets = [known, new]
+        for joint in range(JOINTS):
+            for whole, part in ((known, new), (new, known)):
+                mixed = whole.copy()
+                mixed[joint] = part[joint]
+                sets.append(mixed)
+        return sets[int(np.argmin(self.costs(np.stack(sets)).sum(axis=1)))].copy()
 
-    def soften(self, row: Row, verdict: TrialVerdict, trial: str) -> Row | None:
-        """Note that a controller is restless beside the others' best; a softer one, None where nothing changes."""
-        self.add(row, verdict, trial)
-        self._softened = 0
-        return self._soften(self.tried[-1])
 
-    def begin(self) -> None:
-        """A new controller of a model comes next: if it is restless, it is softened first."""
-        self._softened = 0
-        self._from = None
-        self._factors = None
-        self._step = 0
+def _with_sets_of(before: Controllers, tuned: Controllers) -> Controllers:
+    """The controllers from before with the voltage and the derivative of the tuned ones, and some integral part."""
+    rows = before.copy()
+    rows[:, [KU, CE_TICKS]] = tuned[:, [KU, CE_TICKS]]
+    rows[:, KI] = np.maximum(rows[:, KI], LEAST_KI * GAIN_UNIT)
+    return rows
 
-    def _is_new(self, row: Row) -> bool:
-        return not any(np.array_equal(row, one.row) for one in self.tried)
 
-    def _halve(self, centre: TriedController) -> Row | None:
-        """The last step from `centre`, half as far: where it follows better, but is hardly too much."""
-        last, factors = self.tried[-1].verdict, self._factors
-        helps = last.restless and last.excess <= HARDLY and last.score < centre.verdict.score
-        if factors is None or self._halved == HALVES or not helps:
-            return None
-        self._halved += 1
-        self._factors = {column: factor**HALF for column, factor in factors.items()}
-        return self._scaled(centre.row, self._factors)
-
-    def _soften(self, last: TriedController) -> Row | None:
-        factors = FIRST_SOFTER if self._softened == 0 else SOFTER
-        if last.verdict.chatters_only:
-            factors = QUIETER
-        part = float(np.clip(np.log(last.verdict.excess) / np.log(FAR), GENTLY, 1.0))
-        factors = {column: factor**part for column, factor in factors.items()}
-        self._softened += 1
-        return self._scaled(last.row, factors)
-
-    def _scaled(self, row: Row, factors: dict[int, float]) -> Row | None:
-        """The row with some gains multiplied, within what the firmware takes; None where that changes nothing."""
-        changed = row.astype(np.float64)
-        for column, factor in factors.items():
-            changed[column] *= factor
-            if column == KI and factor > 1.0:
-                if row[KI] >= MOST_KI * GAIN_UNIT:
-                    return None
-                changed[KI] = np.clip(changed[KI], LEAST_KI * GAIN_UNIT, MOST_KI * GAIN_UNIT)
-        most = {KI: largest_ki(self.period_ms) * GAIN_UNIT}
-        for column in (KP, KD, KI):
-            parameter = schema.PARAMETER_BY_NAME[f"joint0.{CONTROLLER_COLUMNS[column]}"]
-            highest = min(float(parameter.maximum), most.get(column, np.inf))
-            changed[column] = np.clip(changed[column], max(parameter.minimum, 1), highest)
-        rounded = np.rint(changed).astype(np.int32)
-        return None if np.array_equal(rounded, row) else rounded
+def _worsen(plant: Floats) -> Floats:
+    """An arm on which a controller comes to rest less easily."""
+    worse = with_gain(plant, GAIN)
+    worse[:, columns("pot_lag")] += LAG_S
+    return worse

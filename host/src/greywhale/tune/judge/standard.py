@@ -13,15 +13,13 @@ from typing import Self
 import numpy as np
 import numpy.typing as npt
 
-from greywhale.base.types import Floats
+from greywhale.base.types import Flags, Floats
 from greywhale.motion.swings import QUIET_SHARE
 from greywhale.protocol.firmware import JOINTS
 from greywhale.tune.judge.margins import AT_REST, TEETH, Margin, Unrest
 
 # Ripple is a figure of noise: the same controller differs so much from one noise to another.
 SAME = 1.05
-
-Flags = npt.NDArray[np.bool_]
 
 
 @dataclass(frozen=True)
