@@ -28,23 +28,19 @@ from tools.support import recordings
 METHODS = ("gwo-woa", "gwo", "woa", "pso")
 BUDGET = 40
 
-
-_follow = on_the_bench.follow_as_paper
-_responses = curves.responses
-
-
-@cache
-def followed(seed: int, seconds: float, period_ms: int, traces: bool, arm: str = DEFAULT) -> dict[str, Any]:
-    """The paper's way, once for both that ask for it."""
-    return _follow(seed, seconds, period_ms, traces, arm)
+followed = cache(on_the_bench.follow_as_paper)  # once for both that ask for it
+_responses, _drawn = curves.responses, list[bytes]()
 
 
 def as_paper(seed: int, seconds: float, period_ms: int, budget: int | None, traces: bool) -> dict[str, Any]:
     """In the place of greywhale's own tuning, which takes a hundred times as long."""
     assert budget is not None
-    return followed(
-        seed=seed, seconds=seconds, period_ms=period_ms, traces=traces, arm=DEFAULT
-    )  # as the other task calls it
+    return follow(seed, seconds, period_ms, traces)
+
+
+def follow(seed: int, seconds: float, period_ms: int, traces: bool, arm: str = DEFAULT) -> dict[str, Any]:
+    """The paper's way."""
+    return followed(seed, seconds, period_ms, traces, arm)
 
 
 def recorded(
@@ -56,14 +52,10 @@ def recorded(
 
 
 def responses(traces: Sequence[Trace], *titles: Any, **window: Any) -> bytes:
-    """One picture stands for all with as many lines and such a window."""
-    key = len(traces), *window.items()
-    if key not in _drawn:
-        _drawn[key] = _responses(traces, *titles, **window)
-    return _drawn[key]
-
-
-_drawn: dict[tuple[Any, ...], bytes] = {}
+    """The first picture stands for all."""
+    if not _drawn:
+        _drawn.append(_responses(traces, *titles, **window))
+    return _drawn[0]
 
 
 def shrink(patch: pytest.MonkeyPatch) -> None:
@@ -72,7 +64,7 @@ def shrink(patch: pytest.MonkeyPatch) -> None:
     patch.setattr(curves, "responses", responses)
     patch.setattr(bench, "record", recorded)
     patch.setattr(on_the_bench, "follow_as_default", as_paper)
-    patch.setattr(on_the_bench, "follow_as_paper", followed)
+    patch.setattr(on_the_bench, "follow_as_paper", follow)
     patch.setattr(optimisers, "METHODS", METHODS)
     for name in ("pages.optimisers", "pages.findings"):
         patch.setattr(f"greywhale.reproduce.{name}.METHODS", METHODS)
@@ -81,12 +73,12 @@ def shrink(patch: pytest.MonkeyPatch) -> None:
     patch.setattr("greywhale.identify.pack_search.BUDGET", 50)
     patch.setattr(optimisers, "functions", lambda: ("sphere",))
     patch.setattr(errata, "cases", lambda: {"E14": ("E14",), "E1 to E8": ("E2",)})
-    patch.setattr(errata, "HOLD_S", 0.2)
+    patch.setattr(errata, "HOLD_S", 0.05)
     patch.setattr(errata, "SWING_S", 0.1)
     patch.setattr(findings, "PERIODS_MS", (1, 20))
     for name in ("work.readings", "work.findings", "pages.readings", "pages.claims"):
-        patch.setattr(f"greywhale.reproduce.{name}.LENGTHS_S", (0.5, 0.6, 0.7, 0.8))
-    patch.setattr(readings, "SMALL_STEP_S", 0.5)
+        patch.setattr(f"greywhale.reproduce.{name}.LENGTHS_S", (0.1, 0.15, 0.2, 0.25))
+    patch.setattr(readings, "SMALL_STEP_S", 0.1)
     patch.setitem(MOTIONS, "steps", lambda: steps(1.0, 0.3, 0.8))
     patch.setitem(MOTIONS, "multi-steps", lambda: multi_steps([0.0, 1.0, -0.5], [0.3, 0.5, 0.8]))
     patch.setattr("greywhale.reproduce.request.Request.logged_s", 6.0)

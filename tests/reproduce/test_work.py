@@ -21,13 +21,10 @@ from greywhale.reproduce.work.motions import PERIOD_MS, printed
 from tests.reproduce.small import shrink
 
 
-def test_corrected_equations_neither_gain_energy_nor_move_otherwise() -> None:
-    assert errata.swing(frozenset()) == pytest.approx(0.0, abs=1e-6)
-
-
-@pytest.mark.slow
 def test_four_times_the_inertia_changes_the_white_box_and_not_the_grey_one(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(errata, "HOLD_S", 0.5)
+    monkeypatch.setattr(errata, "HOLD_S", 0.2)
+    monkeypatch.setattr(errata, "SWING_S", 1.0)
+    assert errata.swing(frozenset()) == pytest.approx(0.0, abs=1e-6)
     effect = errata.effect(0, ["E1"])
     assert effect["energy"] > 0.1
     assert effect["white_box"]["angle"] > 0.1
@@ -39,15 +36,14 @@ def test_the_bench_gives_the_same_log_byte_for_byte(tmp_path: Path) -> None:
     table = bench.board(printed("before_tuning"), PERIOD_MS)
     logs = []
     for name in ("one", "two"):
-        log = bench.record(tmp_path, name, human_reaches(3, 1.5), table)
+        log = bench.record(tmp_path, name, human_reaches(3, 0.5), table)
         assert log.complete
         assert (log.name, bench.why_ended(log)) == (f"{name}.csv", "")
         assert set(log.state) == {"following"}
         assert log.origin.param_crc == table.crc
         logs.append((tmp_path / f"{name}.csv").read_bytes())
     assert logs[0] == logs[1]
-    other = bench.record(tmp_path, "three", human_reaches(3, 1.5), table, bench.BENCH_SEED + 1)
-    assert other.follower.shape != (0, 4)
+    bench.record(tmp_path, "three", human_reaches(3, 0.5), table, bench.BENCH_SEED + 1)
     assert (tmp_path / "three.csv").read_bytes() != logs[0]
 
 
@@ -78,9 +74,10 @@ def test_a_float_law_moves_the_sticky_arm_as_the_firmwares_does() -> None:
     assert np.abs(firmware[-500:]).mean(axis=0) == pytest.approx(np.abs(floats[-500:]).mean(axis=0), abs=0.015)
 
 
-@pytest.mark.slow
 def test_the_reading_decides_what_table_10_gains(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(readings, "LENGTHS_S", (4.0,))
+    monkeypatch.setattr(readings, "SMALL_STEP_S", 0.1)  # of steps only is judged
+    monkeypatch.setattr(errata, "HOLD_S", 0.01)
     gains = []
     for law in ("feet at 0, ce(k) = e(k) - e(k-1)", "crisp feet, ce = de/dt"):
         found = readings.judge_reading(0, law, "no friction", PERIOD_MS)
@@ -96,7 +93,8 @@ def test_friction_explains_where_table_11_rests(monkeypatch: pytest.MonkeyPatch)
 
 
 def test_a_seed_gives_the_same_controllers_again(monkeypatch: pytest.MonkeyPatch) -> None:
-    shrink(monkeypatch)  # a smaller budget
+    shrink(monkeypatch)
+    monkeypatch.setattr(grey_box, "BUDGET", 8)
     first, again, other = (grey_box.tune_on_grey_box(seed, "mf", False) for seed in (1, 1, 2))
     assert first == again
     assert first["controllers"] != other["controllers"]
@@ -104,15 +102,7 @@ def test_a_seed_gives_the_same_controllers_again(monkeypatch: pytest.MonkeyPatch
 
 
 def test_crisp_feet_leave_a_part_of_the_plane_without_a_rule() -> None:
-    rows = printed("table_10")
-    silent = {crisp: errata.Law.of(rows, crisp) for crisp in (False, True)}
-    axis = np.linspace(-1.0, 1.0, 41)
-    x, y = (np.repeat(one.ravel()[:, None], 4, axis=1) for one in np.meshgrid(axis, axis))
-    shares = {
-        crisp: errata.Law(law.sets, np.ones((4, 4)), crisp).fuzzy(x, y)[1].mean(axis=0) for crisp, law in silent.items()
-    }
-    assert not shares[False].any()
-    assert shares[True].max() > 0.2
+    assert max(readings.silent(0)["table_10"]) > 0.2
 
 
 def test_the_printed_objective_rewards_doing_nothing() -> None:
@@ -126,23 +116,20 @@ def test_the_printed_objective_rewards_doing_nothing() -> None:
 def test_a_reason_does_not_name_the_line(tmp_path: Path) -> None:
     table = bench.board(printed("before_tuning"), PERIOD_MS)
     odd = table.with_raw({"tracking_limit": 2048, "tracking_ms": 10})  # 0.5 rad: a step is beyond it
-    reasons = set()
-    for name in ("one", "two"):
-        log = bench.record(tmp_path, name, steps(1.0, 0.2, 0.5), odd)
-        assert not log.complete
-        reasons.add(bench.why_ended(log))
-    assert len(reasons) == 1
-    assert reasons.pop().startswith("the board stopped the motors")
+    log = bench.record(tmp_path, "one", steps(1.0, 0.2, 0.1), odd)
+    assert not log.complete
+    assert bench.why_ended(log).startswith("the board stopped the motors")
+    assert log.ended_by == f"{log.ended_by.split(':')[0]}: {bench.why_ended(log)}"
 
 
-@pytest.mark.parametrize("table", ["before_tuning", "table_9", "table_10"])
+@pytest.mark.parametrize("table", ["table_9", "table_10"])
 @pytest.mark.parametrize(("feet", "crisp"), [(Feet.AT_ZERO, False), (Feet.CRISP, True)])
 def test_floats_are_the_exact_law(table: str, feet: Feet, crisp: bool) -> None:
     rows = printed(table)
     law = Law.of(rows, crisp)
     law = Law(law.sets, np.ones((4, 4)), crisp)
     random = np.random.default_rng(3)
-    for x, y in random.uniform(-1.0, 1.0, (200, 2)):
+    for x, y in random.uniform(-1.0, 1.0, (60, 2)):
         found, silent = law.fuzzy(np.full(4, x), np.full(4, y))
         for joint, row in enumerate(rows):
             sets = JointSettings(*map(int, row)).set_values()
