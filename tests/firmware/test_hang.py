@@ -16,7 +16,7 @@ from greywhale_sim.programs import load_hex
 from tests.firmware.conftest import enable, ms_until_off
 from tests.simulated_board.stk500 import Version1, Version2
 
-PHASES = 20
+PHASES = 8
 OFF_MS = 20.0
 BOOTED_MS = 1500  # through either bootloader
 SREG, INTERRUPTS_ON = 0x5F, 0x80
@@ -37,6 +37,7 @@ def is_nano(bench: BoardWithImage) -> bool:
 
 def reset(bench: BoardWithImage) -> None:
     bench.board.reset()
+    assert ms_until_off(bench) == 0.0
     bench.wait(BOOTED_MS)
 
 
@@ -142,18 +143,24 @@ def test_no_other_restart_is_taken_for_a_hang(booted: BoardWithImage) -> None:
     for restart in [*[reset] * RESETS, sink, cut_power, flash_a_page]:
         follow(booted)
         restart(booted)
+        assert not booted.motors_on
+        assert booted.duty() == 0.0
         assert reset_cause(booted) is not schema.ResetCause.WATCHDOG
         assert (booted.status().state, booted.status().fault) == (schema.State.DISABLED, schema.Fault.NONE)
 
 
 @pytest.mark.slow
 def test_the_watchdog_leaves_boot_and_every_step_of_a_parameter_set_alone(bench: BoardWithImage) -> None:
-    """Staged, applied, saved into both banks, with telemetry on and a reset at the end: the watchdog never bites."""
+    """Staged, applied, saved into both banks, with telemetry on and a reset at the end: the watchdog never bites, and
+    the board counts the sets that it has stored.
+    """
     bench.ask(schema.TelemetryRequest(1))
-    for soft_start_ms in (700, 800, 900):
+    assert bench.status().saves == 0, "its EEPROM is blank"
+    for saves, soft_start_ms in enumerate((700, 800, 800, 900)):
         bench.apply({"soft_start_ms": soft_start_ms}, fresh=True)
         bench.save()
+        assert bench.status().saves == (saves + 1 if saves < 2 else saves), "the same set again writes nothing"
     bench.board.reset()
-    bench.wait(60)
-    assert bench.status().fault is schema.Fault.NONE
+    bench.wait(100)
+    assert (bench.status().fault, bench.status().saves) == (schema.Fault.NONE, 3)
     assert bench.board.stats().watchdog_resets == 0

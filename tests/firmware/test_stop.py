@@ -70,7 +70,7 @@ class Pour:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("rate", [16, 40, 48, 96])
+@pytest.mark.parametrize("rate", [16, 96])
 @pytest.mark.parametrize("kind", [garbage, requests, unfinished, too_long, zeros])
 def test_motors_are_off_soon_after_a_stop_inside_a_flood_or_after_the_line_is_lost(
     bench: BoardWithImage, kind: Flood, rate: int
@@ -100,7 +100,7 @@ def test_motors_are_off_soon_after_a_stop_inside_a_flood_or_after_the_line_is_lo
 def test_a_short_burst_is_no_flood(bench: BoardWithImage, count: int, lossless: bool) -> None:
     """What an honest host may send without waiting (140 bytes), and nearly half as much again, in all phases."""
     enable(bench)
-    for _ in range(60):
+    for _ in range(20):
         bench.wait(bench.random.uniform(191.5, 192.5))
         bench.board.uart_send(bench.random.bytes(count) + b"\0")
     bench.wait(192)
