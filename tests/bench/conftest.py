@@ -32,7 +32,6 @@ class FakeBoard:
     powered: bool = True
     result: int = 0
     crash_reason: str = "a write to nowhere"
-    registered: list[tuple[object, ...]] = field(default_factory=list)
     pins: np.ndarray = field(default_factory=lambda: np.zeros(17))
     millivolts: list[np.ndarray] = field(default_factory=list)
     received: bytearray = field(default_factory=bytearray)  # from the host
@@ -42,12 +41,10 @@ class FakeBoard:
     counters: FakeStats = field(default_factory=FakeStats)
 
     def add_duty_output(self, timer: int, channel: str) -> int:
-        self.registered.append((timer, channel))
-        return len(self.registered) - 1
+        return 0
 
     def add_pin_output(self, port: str, bit: int) -> int:
-        self.registered.append((port, bit))
-        return len(self.registered) - 1
+        return 0
 
     def hold_pin(self, port: str, bit: int, high: bool) -> None:
         self.events.append(f"hold {port}{bit} {'high' if high else 'low'}")
@@ -128,15 +125,11 @@ class FakePots:
         return out
 
 
-def ramp(seconds: float = 1.0) -> Trajectory:
-    """Every joint from its own start (0, 0.1, 0.2, 0.3 rad) 1 rad up at constant speed."""
-    rows = np.arange(round(seconds * 100) + 1) / (100 * seconds)
-    return Trajectory(rows * seconds, rows[:, None] + np.array([0.0, 0.1, 0.2, 0.3]))
-
-
 @pytest.fixture
 def motion() -> Trajectory:
-    return ramp()
+    """Every joint from its own start (0, 0.1, 0.2, 0.3 rad) 1 rad up within a second at constant speed."""
+    rows = np.arange(101) / 100
+    return Trajectory(rows, rows[:, None] + np.array([0.0, 0.1, 0.2, 0.3]))
 
 
 @pytest.fixture

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 import pytest
@@ -63,8 +62,8 @@ def test_pins_that_are_low_drive_no_motor(chip: str) -> None:
     assert low.forwards == low.backwards == 0.0
 
 
-@pytest.mark.parametrize("emf_v", [-11.0, -4.0, -0.5, 0.0, 0.5, 4.0, 11.0])
-@pytest.mark.parametrize("duty", [0.02, 0.1, 0.4, 0.6, 0.95])
+@pytest.mark.parametrize("emf_v", [-11.0, -0.5, 0.0, 4.0, 11.0])
+@pytest.mark.parametrize("duty", [0.02, 0.4, 0.95])
 def test_the_current_of_an_open_bridge_is_that_of_the_circuit(duty: float, emf_v: float) -> None:
     found = mean_volts(Bridge(duty, 0.0, 0.0), SUPPLY_V, emf_v)
     assert found == pytest.approx(emf_v + integrated_current(duty, emf_v), abs=0.03)
@@ -93,19 +92,24 @@ def test_an_open_bridge_without_pulses_leaves_a_motor_alone() -> None:
     assert mean_volts(SHORTED, SUPPLY_V, 3.0) == 0.0
 
 
-def following(chip: str, signals: int, **parameters: int) -> LockStep:
-    """An arm that follows through these drivers, past the soft start."""
+def bench_with(chip: str) -> LockStep:
     host = LockStep(build_bench(BenchOptions(driver=chip)))
     host.boot()
+    return host
+
+
+def follow(host: LockStep, signals: int, **parameters: int) -> None:
+    """Through these drivers, past the soft start."""
     set_parameters(host, {"driver": signals, **parameters})
+    host.ask(schema.ClearFaultRequest())
     host.ask(schema.EnableRequest(0))
     host.run(1.5)
-    return host
 
 
 def following_error(chip: str, signals: int, **parameters: int) -> np.ndarray:
     """(4,) rad rms over two seconds with the paper's controllers, from the arm itself."""
-    host = following(chip, signals, **parameters)
+    host = bench_with(chip)
+    follow(host, signals, **parameters)
     apart: list[np.ndarray] = []
     host.bench.trace = lambda cycle, pins, angles: apart.append(host.bench.leader.angles - angles)
     host.run(2000 * TICK_S)
@@ -136,34 +140,32 @@ def test_an_arm_follows_through_drivers_that_coast(chip: str, signals: int, usua
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("end", ["stop", "reset", "hang"])
 @pytest.mark.parametrize(("chip", "signals"), [("l298n", 1), ("drv8871", 2), ("l298n-jumpers", 3)])
-def test_no_motor_is_driven_after_the_end(chip: str, signals: int, end: str) -> None:
+def test_no_motor_is_driven_after_a_stop_a_hang_or_a_reset(chip: str, signals: int) -> None:
     """Not in any slice of 250 us by chips that have no enable input; a hang may take its 16 ms to end."""
-    host = following(chip, signals, stall_volts=0)
-    assert any(driven(one) for one in host.bench.bridges)
-    if end == "stop":
-        host.ask(schema.StopRequest())
-    elif end == "reset":
-        board: Any = host.bench.board
-        board.reset()
-    else:
-        hang(host)
-        host.run(0.018)
-    host.run(0.001)
+    host = bench_with(chip)
     pulses: list[bool] = []
-    host.bench.trace = lambda cycle, pins, angles: pulses.append(any(driven(one) for one in host.bench.bridges))
-    host.run(1.0)
-    assert pulses
-    assert not any(pulses)
+    host.bench.trace = lambda cycle, pins, angles: pulses.append(any(one.duty > 0.0 for one in host.bench.bridges))
+    for end, within_s in ((stop, 0.001), (hang, 0.019), (reset, 0.001)):
+        follow(host, signals, stall_volts=0)
+        assert pulses[-1]
+        end(host)
+        host.run(within_s)
+        pulses.clear()
+        host.run(2.0)  # in which a person brings the arms back
+        assert pulses
+        assert not any(pulses), end.__name__
+
+
+def stop(host: LockStep) -> None:
+    host.ask(schema.StopRequest())
 
 
 def hang(host: LockStep) -> None:
     """Send the processor into avr-libc's endless loop behind main(), which begins with turning interrupts off."""
     symbols = read_symbols(BUILDS / host.bench.wiring.environment / "firmware.elf")
-    board: Any = host.bench.board
-    board.pc = symbols["_exit"].address
+    host.board.pc = symbols["_exit"].address
 
 
-def driven(bridge: Bridge) -> bool:
-    return bridge.forwards > 0.0 or bridge.backwards > 0.0
+def reset(host: LockStep) -> None:
+    host.board.reset()

@@ -25,35 +25,21 @@ def advance(player: LeaderPlayer, seconds: float, enabled: bool, follower: np.nd
         player.step(enabled, follower)
 
 
-def test_holds_both_arms_at_the_first_pose_until_enabled(player: LeaderPlayer, motion: Trajectory) -> None:
+def test_holds_until_enabled_plays_once_and_brings_both_arms_back(player: LeaderPlayer, motion: Trajectory) -> None:
+    """It lets the follower go at once, and moves after the soft start; after the motors went off it plays again."""
     advance(player, 30.0, enabled=False)
     np.testing.assert_array_equal(player.angles, motion.angles[0])
     np.testing.assert_array_equal(player.hold, motion.angles[0])
-
-
-def test_lets_the_follower_go_at_once_and_moves_after_the_soft_start(player: LeaderPlayer, motion: Trajectory) -> None:
     player.step(True, FALLEN)
     assert player.hold is None
     advance(player, START - SLICE, enabled=True)
     np.testing.assert_array_equal(player.angles, motion.angles[0])
     advance(player, 0.5, enabled=True)
     np.testing.assert_allclose(player.angles, motion.angles[0] + 0.5, atol=1e-9)
-    assert player.plays == 0
-
-
-def test_plays_once_and_holds_the_last_pose(player: LeaderPlayer, motion: Trajectory) -> None:
-    advance(player, START + motion.duration_s + 0.05, enabled=True)
-    assert player.finished
-    assert player.plays == 1
+    assert (player.plays, player.finished) == (0, False)
     advance(player, 60.0, enabled=True)
-    assert player.plays == 1
+    assert (player.plays, player.finished) == (1, True)
     np.testing.assert_allclose(player.angles, motion.angles[-1])
-
-
-def test_brings_both_arms_back_after_the_motors_went_off_and_plays_again(
-    player: LeaderPlayer, motion: Trajectory
-) -> None:
-    advance(player, START + motion.duration_s + 0.05, enabled=True)
     advance(player, LET_GO_S, enabled=False)
     assert player.hold is None, "a fall after a stop must be visible"
     np.testing.assert_allclose(player.angles, motion.angles[-1])

@@ -46,8 +46,12 @@ def eeprom(tmp_path: Path) -> Path:
 
 
 def serve(bench: Bench, wall: Wall, eeprom: Path) -> Server:
-    pacer = Pacer(lambda: wall.now, wall.wait)
-    return Server(bench, SerialPort(), fast=True, eeprom=eeprom, pacer=pacer)
+    return Server(bench, SerialPort(), fast=True, eeprom=eeprom, pacer=Pacer(lambda: wall.now, wall.wait))
+
+
+def turn(server: Server, times: int) -> None:
+    for _ in range(times):
+        server.turn()
 
 
 @pytest.fixture
@@ -67,19 +71,13 @@ def test_opening_resets_the_board_before_the_first_byte(board: Any, server: Serv
         host.write(b"second")
         server.turn()
         assert board.events == ["reset", "bytes", "bytes"]
+        host.write(b"last words")
     server.turn()
+    assert board.received.endswith(b"last words")
     with serial.Serial(server.port.path, 1_000_000):
         server.turn()
         assert board.events[-1] == "reset"
         assert server.resets_by_host == 2
-
-
-def test_last_words_before_a_close_are_delivered(board: Any, server: Server) -> None:
-    with serial.Serial(server.port.path, 1_000_000) as host:
-        server.turn()
-        host.write(b"stop")
-    server.turn()
-    assert bytes(board.received) == b"stop"
 
 
 def test_a_new_host_hears_nothing_from_before(board: Any, server: Server) -> None:
@@ -108,14 +106,12 @@ def test_a_wrong_speed_garbles_both_ways(board: Any, server: Server) -> None:
 
 
 def test_nobody_connected_keeps_real_time_and_a_host_does_not(server: Server, wall: Wall) -> None:
-    for _ in range(100):
-        server.turn()
+    turn(server, 100)
     assert wall.now == pytest.approx(server.bench.time_s, abs=0.02)
     with serial.Serial(server.port.path, 1_000_000):
         server.turn()
         before = wall.now
-        for _ in range(100):
-            server.turn()
+        turn(server, 100)
         assert wall.now == before
 
 
@@ -145,27 +141,20 @@ def test_a_host_that_dies_with_bytes_unread_does_not_stop_the_bench(board: Any, 
     assert cast(SerialPort, server.port).unread() == 0
 
 
-def test_eeprom_reaches_its_file_when_it_changes(board: Any, server: Server, eeprom: Path) -> None:
-    for _ in range(20):
-        server.turn()
+def test_eeprom_reaches_its_file_when_it_changes(board: Any, bench: Bench, wall: Wall, eeprom: Path) -> None:
+    server = serve(bench, wall, eeprom)
+    turn(server, 20)
     assert not eeprom.exists(), "nothing was written, so there is nothing to keep"
     board.counters.eeprom_writes += 1  # a write has begun, its cell does not hold the byte yet
-    for _ in range(20):
-        server.turn()
+    turn(server, 20)
     for value in (b"\x5a", b"\xa5"):
         board.memory = value * 4096
-        for _ in range(20):
-            server.turn()
+        turn(server, 20)
         assert eeprom.read_bytes() == value * 4096
     assert [path.name for path in eeprom.parent.iterdir()] == [eeprom.name]
-
-
-def test_the_last_byte_is_kept_when_the_bench_ends(board: Any, bench: Bench, wall: Wall, eeprom: Path) -> None:
-    server = serve(bench, wall, eeprom)
-    server.turn()
     board.memory = b"\x77" * 4096
     server.close()
-    assert eeprom.read_bytes() == b"\x77" * 4096
+    assert eeprom.read_bytes() == b"\x77" * 4096, "the last byte is kept when the bench ends"
 
 
 def test_a_power_cut_keeps_what_the_eeprom_holds_at_that_moment(board: Any, server: Server, eeprom: Path) -> None:
@@ -197,19 +186,8 @@ def test_a_power_cut_can_wait_for_eeprom_writes(board: Any, server: Server) -> N
     assert board.powered, "one cut was ordered"
 
 
-def test_commands_change_the_bench(server: Server) -> None:
-    assert commands.run(server, "line flip 0.25") == {"flip": 0.25, "lose": 0.0}
-    assert commands.run(server, "speed 1") == {"speed": "1"}
-    assert not server.fast
-    assert commands.run(server, "power off") == {"powered": False}
-    assert commands.run(server, "pot follower 2 open") == {"pot": "follower_2", "state": "open"}
-    assert server.bench.follower_pots.wirings == {2: Wiring.OPEN}  # type: ignore[attr-defined]
-    status = commands.run(server, "status")
-    assert status["powered"] is False
-    assert status["leader"] == pytest.approx([0.0, 0.1, 0.2, 0.3])
-
-
 def test_what_can_be_changed_is_told_with_its_ends_and_as_it_is(server: Server) -> None:
+    assert commands.run(server, "line flip 0.25") == {"flip": 0.25, "lose": 0.0}
     found = commands.run(server, "controls")
     assert found["supply"] == {"minimum": 0.0, "maximum": 30.0, "value": 12.0}
     assert "load" not in found, "this arm is no arm of the bench"
@@ -226,33 +204,27 @@ def test_what_can_be_changed_is_told_with_its_ends_and_as_it_is(server: Server) 
         commands.run(server, "load 0.2")
 
 
-def test_a_load_hangs_on_the_arm_where_it_is(board: Any) -> None:
-    """It pulls the shoulder down once nobody holds it; what was changed stays changed."""
+def test_a_load_pulls_the_arm_down_and_a_hand_pushes_a_joint_against_what_is_in_its_way(
+    eeprom: Path, wall: Wall
+) -> None:
     bench = build_bench(BenchOptions())
+    server = serve(bench, wall, eeprom)
+
+    def rest(joint: int = 0, ms: int = 500) -> float:
+        for _ in range(ms):
+            bench.angles[:] = cast(Any, bench.plant).step([0.0] * 4, 0.001)
+        return float(bench.angles[joint])
+
     falls = {}
-    for mass in (0.0, 0.5):
-        bench.load_tip(mass)
-        assert bench.tip_kg == mass
+    for mass in (0.5, 0.0):
+        assert commands.run(server, f"load {mass}")["load_kg"] == mass
         bench.place(np.zeros(4))
         bench.leader.hold = None
-        for _ in range(200):
-            bench.angles[:] = cast(Any, bench.plant).step([0.0] * 4, 0.001)
-        falls[mass] = -float(bench.angles[1])
+        falls[mass] = -rest(joint=1, ms=200)
         before = bench.angles.copy()
         bench.load_tip(mass)
         np.testing.assert_allclose(cast(Any, bench.plant).step([0.0] * 4, 1e-6), before, atol=1e-6)
     assert falls[0.5] > falls[0.0] + 0.01
-
-
-def test_a_hand_pushes_a_joint_against_what_is_in_its_way(eeprom: Path, wall: Wall) -> None:
-    bench = build_bench(BenchOptions())
-    server = serve(bench, wall, eeprom)
-
-    def rest() -> float:
-        for _ in range(500):
-            bench.angles[:] = cast(Any, bench.plant).step([0.0] * 4, 0.001)
-        return float(bench.angles[0])
-
     bench.place(np.zeros(4))
     assert commands.run(server, "push 0 0.5") == {"push": 0, "torque_nm": 0.5}
     assert commands.run(server, "obstacle 0 20")["angle"] == pytest.approx(math.radians(20))
@@ -278,6 +250,7 @@ def test_a_potentiometer_floats_until_it_is_connected_again(server: Server, boar
     commands.run(server, "pot leader 1 connected")
     commands.run(server, "pot follower 2 open")
     assert board.events == ["floating 0x2", "floating 0x42", "floating 0x40", "floating 0x0"]
+    assert server.bench.follower_pots.wirings[2] is Wiring.OPEN  # type: ignore[attr-defined]
 
 
 def test_the_emergency_stop_closes_its_pin_to_ground_until_it_is_released(server: Server, board: Any) -> None:
