@@ -7,9 +7,10 @@ from pathlib import Path
 
 from elftools.elf.elffile import ELFFile
 
+from tools.gates.size import RAM_SECTIONS
 from tools.gates.timing import tables
 from tools.gates.timing.cycles import Chip
-from tools.gates.timing.graph import Graph, build
+from tools.gates.timing.graph import Graph, below, build
 from tools.gates.timing.listing import ImageError, Instruction, Program, read_program
 
 DATA_SPACE = 0x800000
@@ -23,7 +24,6 @@ class Bound:
 
     bytes: int
     path: tuple[str, ...]
-    interrupt: str
     free: int
 
 
@@ -119,46 +119,21 @@ class Depths:
         return levels
 
 
-def vectors(program: Program) -> dict[str, int]:
-    """The interrupt handlers of an image and where they begin."""
-    return {
-        name: address
-        for name, address in program.symbols.items()
-        if name.startswith("__vector_") and name[9:].isdigit()
-    }
-
-
 def bound(elf: Path, chip: Chip) -> Bound:
     """The bound of an image that starts at main; interrupts do not nest unless one enables them."""
     program = read_program(elf)
     depths = Depths(program, chip)
     starts = [program.symbols[name] for name in ("main", "__do_global_ctors") if name in program.symbols]
     foreground, path = max(depths.of(start) for start in starts)
-    handlers = vectors(program)
-    for name, address in handlers.items():
-        if any(program.at(node).mnemonic == "sei" for node in _reached(program, address, chip)):
+    handlers = program.vectors.values()
+    for graph, (name, *_) in below(program, handlers, chip):
+        if any(program.at(node).mnemonic == "sei" for node in graph.nodes):
             raise ImageError(f"{name}: an interrupt that enables interrupts may nest, so the stack has no bound.")
-    deepest = {name: depths.of(address)[0] for name, address in handlers.items()}
-    interrupt = max(deepest, key=lambda name: deepest[name], default="")
-    extra = chip.return_address + deepest[interrupt] if interrupt else 0
-    return Bound(chip.return_address + foreground + extra, path, interrupt, chip.ram_end + 1 - _variables_end(elf))
-
-
-def _reached(program: Program, entry: int, chip: Chip) -> set[int]:
-    """All instructions that a function may run, those of its callees too."""
-    nodes: set[int] = set()
-    waiting, seen = [entry], {entry}
-    while waiting:
-        graph = build(program, waiting.pop(), chip)
-        nodes |= graph.nodes
-        waiting += set(graph.calls.values()) - seen
-        seen |= set(graph.calls.values())
-    return nodes
+    extra = max((chip.return_address + depths.of(address)[0] for address in handlers), default=0)
+    return Bound(chip.return_address + foreground + extra, path, chip.ram_end + 1 - _variables_end(elf))
 
 
 def _variables_end(elf: Path) -> int:
     with elf.open("rb") as stream:
-        sections = [
-            s for s in ELFFile(stream).iter_sections() if s.name in (".data", ".bss", ".noinit") and s["sh_size"]
-        ]
-        return max(int(section["sh_addr"] + section["sh_size"]) for section in sections) - DATA_SPACE
+        variables = [one for one in ELFFile(stream).iter_sections() if one.name in RAM_SECTIONS and one["sh_size"]]
+        return max(int(section["sh_addr"] + section["sh_size"]) for section in variables) - DATA_SPACE

@@ -116,7 +116,7 @@ def test_a_switch_goes_to_all_its_cases(tmp_path: Path, chip: Chip) -> None:
 def test_no_random_function_is_slower_than_its_bound(tmp_path: Path, chip: Chip) -> None:
     draw = random.Random(11)
     simple = ("nop", "inc r25", "mul r24, r25", "lds r23, 0x200", "adiw r26, 1", "lpm r23, Z")
-    for _ in range(6):
+    for _ in range(3):
         lines = []
         for label in range(10, 40):
             test = draw.choice((f"sbrc r24, {draw.randrange(3)}", f"cpi r24, {draw.randrange(8)}\n  brlo {label}f"))

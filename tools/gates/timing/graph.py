@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 
 from tools.gates.timing import tables
@@ -107,3 +107,16 @@ def build(program: Program, entry: int, chip: Chip) -> Graph:
             before.setdefault(edge.end, instruction)
             waiting.append(edge.end)
     return graph
+
+
+def below(program: Program, entries: Iterable[int], chip: Chip) -> Iterator[tuple[Graph, tuple[str, ...]]]:
+    """The graphs of functions and of all that they call, each once, and the symbols on a way to it."""
+    waiting: list[tuple[int, tuple[str, ...]]] = [(entry, (program.symbol(entry),)) for entry in entries]
+    seen = {entry for entry, _ in waiting}
+    while waiting:
+        entry, path = waiting.pop()
+        graph = build(program, entry, chip)
+        yield graph, path
+        called = set(graph.calls.values()) - seen
+        seen |= called
+        waiting += [(callee, (*path, program.symbol(callee))) for callee in called]

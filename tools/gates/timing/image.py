@@ -86,12 +86,11 @@ class Times:
 
 def _handlers(program: Program, target: Target) -> dict[str, int]:
     """Role -> address; a handler that has no role is refused."""
-    found = {int(name[9:]) for name in program.symbols if name.startswith("__vector_") and name[9:].isdigit()}
-    known = set(target.vectors.values())
+    found, known = set(program.vectors), set(target.vectors.values())
     if found != known:
         more, less = sorted(found - known), sorted(known - found)
         raise ImageError(f"the image has the interrupts {more} without a role and lacks {less}.")
-    return {role: program.symbols[f"__vector_{number}"] for role, number in target.vectors.items()}
+    return {role: program.vectors[number] for role, number in target.vectors.items()}
 
 
 def compiler(elf: Path) -> str:

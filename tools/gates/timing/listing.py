@@ -59,6 +59,12 @@ class Program:
     def _flash(self) -> dict[int, int]:
         return {i.address + n: byte for i in self.instructions.values() for n, byte in enumerate(i.code)}
 
+    @cached_property
+    def vectors(self) -> dict[int, int]:
+        """Number -> address of every interrupt handler."""
+        found = {name.removeprefix("__vector_"): address for name, address in self.symbols.items()}
+        return {int(name): address for name, address in found.items() if name.isdigit()}
+
     def word(self, address: int) -> int:
         """The 16-bit number at a byte address of the flash."""
         return self._flash[address] | self._flash[address + 1] << 8
