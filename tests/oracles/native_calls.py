@@ -14,7 +14,24 @@ import pytest
 from greywhale import _native
 
 Array = npt.NDArray[Any]
-JOINTS = 4
+# The arguments of a function in the order of driver.cpp: arrays with their type, reals with "real", else whole numbers.
+BOARD = "settings timing pots pot_supply:real seed"
+ARGUMENTS = {
+    "leader_readings": f"{BOARD} angles:float64",
+    "sixteen_laws": "controllers:int32 period_ms leader:int32 follower:int32 limit_mv:uint16",
+    "simulate_windows": "plants:float64 offsets:float64 kicks:float64 first:int64 angles:float64 velocities:float64 "
+    "sides:float64 places:float64 rows volts:float64 spacing:float64 substeps every",
+    "simulate_ideal": "leader:float64 late plant:float64 supply:real tunings:float64 chased direction:int8 "
+    "until:float64",
+}
+EXPERIMENT = f"{BOARD} home:real gap:real reference:int16 leader:float64 weight:float64"
+RUN = "controllers:int32 plants:float64 substeps every exact"
+SETTINGS = (
+    "period_ms supply_mv soft_start_ms filter_shift limit_min limit_max motor_sign pwm_top "
+    "leader_zero leader_scale follower_zero follower_scale"
+)
+TIMING = "start acts on late"
+POT = "track:real centre:real direction:real noise:real linearity:real play:real lag:real"
 
 
 @dataclass(frozen=True)
@@ -55,12 +72,12 @@ class Calls:
         return make
 
     def _kept(self, name: str, real: Any, parts: tuple[str, ...]) -> Any:
-        pack = getattr(self, f"_{name}")
-
         def call(**arguments: Any) -> Any:
+            assert arguments.get("keep", True), "the driver always gives the angles"
             result = real(**arguments)
             values = result if isinstance(result, tuple) else (result,)
-            self.keep(name, pack(**arguments), dict(zip(parts, map(np.asarray, values), strict=True)))
+            packed = self.packed(ARGUMENTS[name], arguments)
+            self.keep(name, packed, dict(zip(parts, map(np.asarray, values), strict=True)))
             return result
 
         return call
@@ -71,83 +88,30 @@ class Calls:
         class ClosedLoop:
             def __init__(self, **arguments: Any) -> None:
                 self._real = real(**arguments)
-                self._packed = calls.pack_experiment(**arguments)
+                self._packed = calls.packed(EXPERIMENT, arguments)
 
             def run(self, **arguments: Any) -> Any:
                 result = self._real.run(**arguments)
                 names = ("mse", "itae", "itau", "diverged", "angles", "duties")
-                calls.keep("run", self._packed + calls.pack_run(**arguments), dict(zip(names, result, strict=True)))
+                calls.keep("run", self._packed + calls.packed(RUN, arguments), dict(zip(names, result, strict=True)))
                 return result
 
         return ClosedLoop
 
-    def _settings(self, settings: object) -> bytes:
-        given = self._made[id(settings)][1]
-        names = ("period_ms", "supply_mv", "soft_start_ms", "filter_shift", "limit_min", "limit_max", "motor_sign")
-        calibration = ("leader_zero", "leader_scale", "follower_zero", "follower_scale")
-        return b"".join(wholes(given[name]) for name in (*names, "pwm_top", *calibration))
-
-    def _timing(self, timing: object) -> bytes:
-        given = self._made[id(timing)][1]
-        return b"".join(wholes(given[name]) for name in ("start", "acts", "on", "late"))
-
-    def _pots(self, pots: list[object]) -> bytes:
-        names = ("track", "centre", "direction", "noise", "linearity", "play", "lag")
-        return b"".join(reals(self._made[id(pot)][1][name]) for pot in pots for name in names)
-
-    def _board(self, settings: object, timing: object, pots: list[object], pot_supply: float, seed: int) -> bytes:
-        return self._settings(settings) + self._timing(timing) + self._pots(pots) + reals(pot_supply) + wholes(seed)
-
-    def _leader_readings(self, *, angles: Array, **board: Any) -> bytes:
-        return self._board(**board) + array(angles, np.float64)
-
-    def pack_experiment(
-        self, *, home: Any, gap: Any, reference: Array, leader: Array, weight: Array, **board: Any
-    ) -> bytes:
-        arrays = array(reference, np.int16) + array(leader, np.float64) + array(weight, np.float64)
-        return self._board(**board) + reals(home) + reals(gap) + arrays
-
-    @staticmethod
-    def pack_run(*, controllers: Array, plants: Array, substeps: int, every: int, exact: bool, **_: Any) -> bytes:
-        return array(controllers, np.int32) + array(plants, np.float64) + wholes([substeps, every, exact])
-
-    @staticmethod
-    def _sixteen_laws(
-        *, controllers: Array, period_ms: int, leader: Array, follower: Array, limit_mv: Array, **_: Any
-    ) -> bytes:
-        angles = array(leader, np.int32) + array(follower, np.int32)
-        return array(controllers, np.int32) + wholes(period_ms) + angles + array(limit_mv, np.uint16)
-
-    @staticmethod
-    def _simulate_windows(**given: Any) -> bytes:
-        names = ("angles", "velocities", "sides", "places")
+    def packed(self, names: str, given: Mapping[str, Any]) -> bytes:
+        """Arguments as the driver reads them; those that were made before are packed by what they were made of."""
         return b"".join(
-            (
-                *(array(given[name], np.float64) for name in ("plants", "offsets", "kicks")),
-                array(given["first"], np.int64),
-                *(array(given[name], np.float64) for name in names),
-                wholes(given["rows"]),
-                array(given["volts"], np.float64),
-                array(given["spacing"], np.float64),
-                wholes([given["substeps"], given["every"]]),
-            )
+            self._one(given[name], kind, name) for name, _, kind in (one.partition(":") for one in names.split())
         )
 
-    @staticmethod
-    def _simulate_ideal(**given: Any) -> bytes:
-        assert given["keep"], "the driver always gives the angles"
-        return b"".join(
-            (
-                array(given["leader"], np.float64),
-                wholes(given["late"]),
-                array(given["plant"], np.float64),
-                reals(given["supply"]),
-                array(given["tunings"], np.float64),
-                wholes(given["chased"]),
-                array(given["direction"], np.int8),
-                array(given["until"], np.float64),
-            )
-        )
+    def _one(self, value: Any, kind: str, name: str) -> bytes:
+        made = {"settings": SETTINGS, "timing": TIMING, "pots": POT}.get(name)
+        if made is not None:
+            parts = value if isinstance(value, list) else [value]
+            return b"".join(self.packed(made, self._made[id(part)][1]) for part in parts)
+        if not kind:
+            return wholes(value)
+        return reals(value) if kind == "real" else array(value, kind)
 
 
 def wholes(values: Any) -> bytes:
