@@ -55,8 +55,8 @@ def _cycles() -> list[Figure]:
         board.set_state(point.integral, point.previous)
         return board.period_cycles(point.e, point.limit_mv)
 
-    _, inferring = climb(inference, Random(1), DRAWS, CLIMBS)
-    _, stepping = climb(period, Random(2), DRAWS, CLIMBS)
+    inferring = climb(inference, Random(1), DRAWS, CLIMBS)
+    stepping = climb(period, Random(2), DRAWS, CLIMBS)
     return [
         *_figures("fuzzy: inference", inferring, "<= 450 cycles", 450),
         *_figures("fuzzy: PD+I of one joint", stepping),
@@ -129,5 +129,5 @@ def _least_exact() -> list[Figure]:
         u = law.infer(Fraction(point.e, 4096), Fraction(point.ce, 4096)).u
         return abs(float(ours - (1 << 15) * u))
 
-    _, errors = climb(error, Random(3), 4_000, 300)
+    errors = climb(error, Random(3), 4_000, 300)
     return [at_most("fuzzy: largest error found over all parameters", max(errors), "LSB q15", 1)]

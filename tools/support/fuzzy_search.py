@@ -75,29 +75,24 @@ class Random:
         """The same with one or two things changed."""
         other = self.point()
         kind = self.random.integers(0, 5)
-        if kind == 0:
-            name = str(self.random.choice(WIDTHS))
+        if kind < 2:
+            name = str(self.random.choice(WIDTHS if kind == 0 else ("kp", "kd", "ku_mv")))
             return replace(point, settings=replace(point.settings, **{name: getattr(other.settings, name)}))
-        if kind == 1:
-            name = str(self.random.choice(["kp", "kd", "ku_mv"]))
-            return replace(point, settings=replace(point.settings, **{name: getattr(other.settings, name)}))
-        if kind == 2:
-            step = int(self.random.normal(0, 10.0 ** self.random.uniform(0, 3)))
-            return replace(point, e=max(-LARGEST, min(LARGEST, point.e + step)))
-        if kind == 3:
-            step = int(self.random.normal(0, 10.0 ** self.random.uniform(0, 3)))
-            return replace(point, ce=max(-LARGEST, min(LARGEST, point.ce + step)))
+        if kind < 4:
+            name = "e" if kind == 2 else "ce"
+            moved = getattr(point, name) + int(self.random.normal(0, 10.0 ** self.random.uniform(0, 3)))
+            return replace(point, **{name: max(-LARGEST, min(LARGEST, moved))})
         if self.random.random() < 0.5:
             e, ce = self.place(point.settings, point.period_ms)
             return replace(point, e=e, ce=ce)
         return replace(point, integral=other.integral, limit_mv=other.limit_mv)
 
 
-def climb(cost: Callable[[Point], float], random: Random, draws: int, climbs: int) -> tuple[Point, list[float]]:
-    """The costliest point found, and the costs of the random draws."""
+def climb(cost: Callable[[Point], float], random: Random, draws: int, climbs: int) -> list[float]:
+    """The costs of the random draws, and at last the highest that was found."""
     points = [random.point() for _ in range(draws)]
     costs = [cost(point) for point in points]
-    best, highest = points[0], -1.0
+    highest = -1.0
     for index in np.argsort(costs)[::-1][:8]:
         point, reached = points[int(index)], costs[int(index)]
         for _ in range(climbs):
@@ -105,6 +100,5 @@ def climb(cost: Callable[[Point], float], random: Random, draws: int, climbs: in
             value = cost(candidate)
             if value >= reached:
                 point, reached = candidate, value
-        if reached > highest:
-            best, highest = point, reached
-    return best, [*costs, highest]
+        highest = max(highest, reached)
+    return [*costs, highest]
