@@ -8,6 +8,7 @@ filtered, scaled to 1/4096 rad.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import accumulate
 from pathlib import Path
 
 import numpy as np
@@ -66,9 +67,10 @@ def record(
     origin = Origin("0.1.0", table.board.key, table.crc, table.period_ms, every, joints=table.joints_in_use)
     first = round(START_S * 1000)
     with LogWriter(path, origin) as log:
-        for row, tick in enumerate(range(first, len(volts), every)):
-            leader = [float(value) * ANGLE_LSB for value in experiment.reference[tick]]
-            log.append(row * every / 1000, leader, list(follower[tick]), list(volts[tick]), "following")
+        shown = (experiment.reference * ANGLE_LSB, follower, volts)
+        rows = zip(*(one[first : len(volts) : every].tolist() for one in shown), strict=True)
+        for row, (leader, angles, drives) in enumerate(rows):
+            log.append(row * every / 1000, leader, angles, drives, "following")
     return read_log(path)
 
 
@@ -78,10 +80,12 @@ def readings_of(angles: Floats, arm: ArmParameters, table: ParameterTable, seed:
     shift = table["filter_shift"]
     before = np.vstack([angles[:1], angles[:-1]])
     between = np.stack([before + moment * (angles - before) for moment in MOMENTS], axis=1)
-    counts = np.array([pots.counts(row) for row in np.ascontiguousarray(between.reshape(-1, JOINTS))])
-    filtered = counts.reshape(len(angles), len(MOMENTS), JOINTS).sum(axis=1) * 4.0
-    for tick in range(1, len(filtered)):
-        filtered[tick] = filtered[tick - 1] + (filtered[tick] - filtered[tick - 1]) / (1 << shift)
+    millivolts = np.empty_like(between)
+    for row, out in zip(between.reshape(-1, JOINTS), millivolts.reshape(-1, JOINTS), strict=True):
+        pots.millivolts(row, out)
+    counts = np.minimum(np.floor(millivolts / (1000.0 * arm.follower_pots.supply) * 1024.0), 1023.0)
+    parts = float(1 << shift)
+    filtered = np.array(list(accumulate(counts.sum(axis=1) * 4.0, lambda old, new: old + (new - old) / parts)))
     zero, scale = np.array(table.each("follower", "zero")), np.array(table.each("follower", "scale"))
     readings: Floats = np.floor((filtered - zero) * scale / 8192.0 + 0.5) * ANGLE_LSB
     return readings
