@@ -41,7 +41,7 @@ TEST_CASE("a power cut at any write, with any torn byte, leaves the old or the n
   long found_old = 0;
   long found_new = 0;
   long found_lost = 0;
-  for (int saves = 0; saves <= 3; ++saves) {
+  for (int saves = 0; saves <= 2; ++saves) {  // both banks blank, then one, then none
     params::Table old_table;
     const FakeEeprom before = history(saves, old_table);
     const params::Table new_table = variant(7);
@@ -65,9 +65,10 @@ TEST_CASE("a power cut at any write, with any torn byte, leaves the old or the n
         const bool is_new = same(found, new_table);
         EXPECT((is_old || is_new));
         // A save that has begun is lost, unless the cut came so early or so late that both banks are whole or blank.
-        if (cut > 1 && is_old) EXPECT(lost(eeprom));
-        if (is_new) EXPECT(!lost(eeprom));
-        found_lost += lost(eeprom) ? 1 : 0;
+        const bool is_lost = lost(eeprom);
+        if (cut > 1 && is_old) EXPECT(is_lost);
+        if (is_new) EXPECT(!is_lost);
+        found_lost += is_lost ? 1 : 0;
         found_old += is_old ? 1 : 0;
         found_new += is_new ? 1 : 0;
         ++cuts;
@@ -82,7 +83,7 @@ TEST_CASE("a power cut at any write, with any torn byte, leaves the old or the n
   }
   MESSAGE(cuts, " power cuts: ", found_old, " boots found the old set, ", found_new, " the new one, ", found_lost,
           " told of a lost set");
-  CHECK(found_new >= 4);  // a cut in the last write whose byte came out right
+  CHECK(found_new >= 3);  // a cut in the last write whose byte came out right
 }
 
 TEST_CASE("a half-written bank is never taken, even when its CRC happens to be right") {
