@@ -5,27 +5,22 @@ from __future__ import annotations
 import json
 import threading
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from playwright.sync_api import BrowserContext, Locator, Page, expect
+from playwright.sync_api import Locator, Page, expect
 
 from greywhale.board.calibrate.words import sweep_asked
 from greywhale.commission.measures import NAMES, Measures
 from greywhale.commission.motions import PARTS
 from greywhale.dashboard.job import Facts
 from greywhale.dashboard.jobs import Listed
-from greywhale.files import parameter_file
 from greywhale.files.log import read_log
-from greywhale.protocol.firmware import ANGLE_LSB
 from greywhale.protocol.schema import DEFAULTS, PARAMETER_BY_NAME
-from greywhale.protocol.table import ParameterTable
 from tests.page.barriers import DARK_AND_NARROW, LIGHT_AND_WIDE, require_no_barrier
-from tests.page.conftest import at_rest
 from tests.page.stage import PATIENCE_MS, Stage
-from tools.support.hands import Hands, mounted_anyhow, save_arm
+from tools.support.hands import Hands
 
 pytestmark = pytest.mark.slow
 
@@ -107,7 +102,6 @@ def test_verbs_end_with_their_result_or_their_sentence(search: Locator, desk: Pa
     led = read_log(folder / "second.csv")
     assert led.leader[-1, 0] == pytest.approx(0.2, abs=0.001)
     assert set(np.diff(np.round(1000 * led.time))) == {1}
-    expect(done(begin(desk, "doctor"))).to_contain_text("There is no port bench in lock step")
     expect(done(begin(desk, "upload", controller="table_8", yes=True))).to_contain_text("joint0.kp")
     desk.get_by_role("button", name="Controller").click()  # which follows
     raw = stage.answers.controller("table_8")["raw"][KP.name]
@@ -115,12 +109,8 @@ def test_verbs_end_with_their_result_or_their_sentence(search: Locator, desk: Pa
     expect(desk.get_by_label("Kp 1/rad")).to_have_value(f"{KP.to_physical(raw):.7g}")
     expect(desk.get_by_text("The board has stored these controllers.")).to_be_visible()
     desk.get_by_role("button", name="Do", exact=True).click()
-    parameter_file.save(folder / "kept.toml", ParameterTable.defaults())
-    expect(done(begin(desk, "params restore", file="kept.toml"))).to_contain_text("joint0.kp")
-    assert stage.runs() == {}
     expect(failed(identify)).to_contain_text("first.csv: only 0.")
     expect(identify.get_by_label("What the verb says")).to_be_hidden()  # which is the same sentence
-    expect(failed(begin(desk, "flash", hex_file="none.hex"))).to_contain_text("none.hex")
 
 
 def test_a_search_draws_its_curve_while_it_runs_and_each_joints_at_its_end(search: Locator, stage: Stage) -> None:
@@ -135,29 +125,21 @@ def test_a_search_draws_its_curve_while_it_runs_and_each_joints_at_its_end(searc
         assert depths[int(np.argmin(curve["cost"]))] == max(depths), "the lower on the screen, the better"
 
 
-POSE_RAD = -0.4
-
-
-def test_a_board_mounted_anyhow_is_calibrated(context: BrowserContext, tmp_path: Path) -> None:
-    stage = Stage(tmp_path, "--arm", save_arm(mounted_anyhow(1), tmp_path))
-    with stage.open(), at_rest(context, stage) as page:
-        page.get_by_role("button", name="Do", exact=True).click()
-        job = begin(page, "calibrate", in_use="1", second="0,50,0,0", no_motors=True, yes=True)
-        hands = Hands(stage.bench, second=np.array([0.0, 50.0, 0.0, 0.0]))
-        said = job.get_by_label("What the verb says")
-        for step in ("Sweep 1 of 2", "Sweep 2 of 2", *(f"Pose {pose} of 4" for pose in range(1, 5))):
-            while step not in said.inner_text():
-                stage.live(0.1)  # the verb listens to a board at rest
-            hands.follow(next(line for line in said.inner_text().splitlines() if line.startswith(step)))
-            while hands.answer() is None:
-                stage.live(0.1)
-            job.get_by_role("button", name="Answer").click()
-        done(job)
-        stage.command(f"hand both 0 {POSE_RAD} 0 0 0.2")
-        stage.live(0.5)
-        newest = stage.newest()
-    angles = np.array([newest.leader[1], newest.follower[1]]) * ANGLE_LSB
-    assert angles == pytest.approx([POSE_RAD, POSE_RAD], abs=0.004)
+def test_a_calibration_takes_answers_and_ends_where_it_is_stopped(desk: Page, stage: Stage) -> None:
+    job = begin(desk, "calibrate", in_use="1", yes=True)
+    hands = Hands(stage.bench)
+    said = job.get_by_label("What the verb says")
+    for step in ("Sweep 1 of 2", "Sweep 2 of 2"):
+        while step not in said.inner_text():
+            stage.live(0.1)  # the verb listens to a board at rest
+        hands.follow(next(line for line in said.inner_text().splitlines() if line.startswith(step)))
+        while hands.answer() is None:
+            stage.live(0.1)
+        job.get_by_role("button", name="Answer").click()
+    while "Pose 1 of 4" not in said.inner_text():
+        stage.live(0.1)
+    job.get_by_role("button", name="Stop this").click()
+    end(job, "stopped")
 
 
 def facts_of(verb: str) -> Facts:

@@ -30,8 +30,22 @@ def write(path: Path, lag: int) -> None:
             log.append(time_s, 4 * [led], 4 * [followed], 4 * [led - followed], "following")
 
 
-def test_two_logs_lie_over_each_other_with_the_measures_of_evaluate(shared_page: Page, stage: Stage) -> None:
-    page, folder = shared_page, stage.folder
+def test_two_logs_lie_over_each_other_and_what_is_none_is_told_as_in_a_terminal(
+    context: BrowserContext, stage: Stage
+) -> None:
+    with stages.visit(context, stage) as visit:
+        require_two_logs_with_the_measures_of_evaluate(visit.page, stage.folder)
+        (stage.folder / "bad.csv").write_text(
+            (stage.folder / "late.csv").read_text().replace(",following\n", ",<b>x</b>\n", 1)
+        )
+        visit.page.reload()
+        require_an_error_beside_a_log(visit.page)
+        (said,) = visit.strange  # by the browser, of each answer that refuses
+        assert "status of 400" in said
+        visit.strange.clear()
+
+
+def require_two_logs_with_the_measures_of_evaluate(page: Page, folder: Path) -> None:
     for name, lag in LAG_TICKS.items():
         write(folder / name, lag)
     page.get_by_role("button", name="Logs").click()
@@ -59,20 +73,12 @@ def test_two_logs_lie_over_each_other_with_the_measures_of_evaluate(shared_page:
         assert told[:3] == pytest.approx([led, followed, led - followed], abs=1.1e-3)
 
 
-def test_what_is_no_sound_log_is_told_as_in_a_terminal(context: BrowserContext, stage: Stage) -> None:
-    write(stage.folder / "good.csv", 40)
-    whole = (stage.folder / "good.csv").read_text()
-    (stage.folder / "bad.csv").write_text(whole.replace(",following\n", ",<b>x</b>\n", 1))
-    with stages.visit(context, stage) as visit:
-        page = visit.page
-        page.get_by_role("button", name="Logs").click()
-        for name in ("good.csv", "bad.csv"):
-            page.get_by_role("button", name=name).click()
-        told = page.get_by_role("alert").first
-        expect(told).to_contain_text("bad.csv, line")
-        expect(told).to_contain_text("'<b>x</b>' is not one of boot, disabled")
-        expect(page.get_by_role("button", name="good.csv")).to_have_attribute("aria-pressed", "true")
-        expect(page.get_by_role("button", name="bad.csv")).to_have_attribute("aria-pressed", "false")
-        (said,) = visit.strange  # by the browser, of each answer that refuses
-        assert "status of 400" in said
-        visit.strange.clear()
+def require_an_error_beside_a_log(page: Page) -> None:
+    page.get_by_role("button", name="Logs").click()
+    for name in ("late.csv", "bad.csv"):
+        page.get_by_role("button", name=name).click()
+    told = page.get_by_role("alert").first
+    expect(told).to_contain_text("bad.csv, line")
+    expect(told).to_contain_text("'<b>x</b>' is not one of boot, disabled")
+    expect(page.get_by_role("button", name="late.csv")).to_have_attribute("aria-pressed", "true")
+    expect(page.get_by_role("button", name="bad.csv")).to_have_attribute("aria-pressed", "false")
