@@ -13,7 +13,6 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from jsonschema import Draft202012Validator
 
 from greywhale.base.errors import UserError
 from greywhale.cli import entry
@@ -24,8 +23,8 @@ from greywhale.dashboard.jobs import Jobs
 from greywhale.dashboard.verbs import command_line
 from greywhale.files.log import read_log
 from greywhale_sim.lockstep import LockStepBench
+from tests.cli.example_log import write_log
 from tests.dashboard.shared import Shared, Viewer, jobs_of
-from tools.docs.schemas import schemas
 
 PATIENCE_S = 120.0  # a verb that says nothing for so long hangs
 
@@ -85,14 +84,10 @@ def in_a_terminal(words: list[str], folder: Path, monkeypatch: pytest.MonkeyPatc
 def test_a_verb_answers_and_fails_as_in_a_terminal(
     desk: Desk, bench: LockStepBench, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    for verb, arguments in (
-        ("record", {"seconds": 0.3, "out": "log.csv"}),
-        ("params backup", {"file": "kept.toml"}),
-    ):
-        job = desk.run(verb, **arguments)
-        assert (job["state"], job["exit_code"], job["error"]) == ("done", 0, None), job
-        Draft202012Validator(schemas()[verb]).validate(job["result"])
-        assert job["result"]["port"] == bench.port
+    job = desk.run("params backup", file="kept.toml")
+    assert (job["state"], job["exit_code"], job["error"]) == ("done", 0, None), job
+    assert job["result"]["port"] == bench.port
+    write_log(tmp_path / "log.csv")
     for file in ("log.csv", "none.csv"):
         job = desk.run("evaluate", logs=[file])
         code, answer = in_a_terminal(["evaluate", file], tmp_path, monkeypatch)
@@ -121,8 +116,6 @@ def test_what_uses_the_board_ends_with_the_page_that_drives(desk: Desk) -> None:
     desk.wait(id, lambda facts: facts["progress"])
     with pytest.raises(UserError, match="another verb uses the board"):
         desk.start("info")
-    with pytest.raises(UserError, match="another verb uses|only watches"):
-        desk.jobs.start({"verb": "info", "arguments": {}}, watcher.client.id)
     word = watcher.words("driver")[-1]
     assert (word["job"], word["verb"]) == (id, "record")
     desk.shared.relay.leave(desk.page.client)
@@ -139,14 +132,6 @@ def test_a_board_that_goes_away_ends_the_verb_with_its_sentence(desk: Desk, benc
     assert f"{bench.port}: the port went away" in (job["error"] or "")
     with pytest.raises(UserError, match="unplugged"):
         desk.start("info")
-
-
-def test_a_page_that_watches_starts_nothing_on_the_board(desk: Desk) -> None:
-    watcher = desk.shared.page(0)
-    with pytest.raises(UserError, match="only watches"):
-        desk.jobs.start({"verb": "info", "arguments": {}}, watcher.client.id)
-    with pytest.raises(UserError, match="is no job"):
-        desk.jobs.stop("none")
 
 
 ECHO = "import json, sys; input(); print(json.dumps({'words': sys.argv[3:]}))"  # tells how it was called, when asked
@@ -168,6 +153,8 @@ def test_what_needs_the_port_itself_has_it_as_long_as_it_runs(shared: Shared, tm
     asked = {"verb": "flash", "arguments": {"hex_file": "a.hex"}}
     with pytest.raises(UserError, match="only watches"):
         jobs.start(asked, page.client.id)
+    with pytest.raises(UserError, match="is no job"):
+        jobs.stop("none")
     shared.relay.drive(page.client)
     shared.relay.close("the port", "No firmware answers there; flash it.")
     started = jobs.start(asked, page.client.id)

@@ -51,7 +51,7 @@ def numbers_of_the_law() -> dict[str, list[dict[str, Any]]]:
     chance = np.random.default_rng(1)
     cases: list[dict[str, Any]] = []
     refused: list[dict[str, Any]] = []
-    while len(cases) < 500 or len(refused) < 2000:
+    while len(cases) < 200 or len(refused) < 800:
         settings = any_settings(chance)
         period_ms = int(chance.choice([1, 1, 1, 20, 50, 51]))
         told: dict[str, Any] = {"settings": asdict(settings), "period_ms": period_ms}

