@@ -10,33 +10,28 @@ import pytest
 
 from greywhale.arm.export import urdf
 from greywhale.cli import entry
-from greywhale.files import parameter_file
 from greywhale.files.arm import load_arm
 from greywhale.files.leader import save_leader
 from greywhale.files.log import read_log
 from greywhale.files.trajectory import Trajectory
 from greywhale.protocol.schema import State
-from greywhale.protocol.table import ParameterTable
 from tests.board.port_board import PortBoard
 from tests.support.killing import count_changes, kill
 
 LEASE_TICKS = 600  # the lease, and what was on its way
 MOVING = (State.SOFT_START, State.FOLLOWING)
 ON_A_BOARD = {
-    "record -s 0.4 -o log.csv": "log.csv",
     "record -s 0.4 --enable -o log.csv": "log.csv",
     "record -s 0.4 --reconnect -o log.csv": "log.csv",
     "replay motion.csv --yes -o log.csv": "log.csv",
     "upload table_8": "",
     "params set joint0.kp=0.5 supply_mv=12000": "",
-    "params restore table.toml": "",
     "params backup backup.toml": "backup.toml",
     "stop --clear-fault": "",
 }
 ALONE = {
     "arm import arm.urdf -o arm.toml": ("arm.toml",),
     "export --fis table_8 --out c.fis": tuple(f"c_joint{joint}.fis" for joint in range(4)),
-    "export --urdf default --out a.urdf": ("a.urdf",),
     "compare --functions sphere --methods gwo --budget 30 --seeds 1 --jobs 1 -o c.csv": ("c.csv",),
 }
 
@@ -46,14 +41,13 @@ def _quick_boards_and_inputs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
     monkeypatch.chdir(tmp_path)
     times = np.arange(0.0, 0.3, 0.05)
     save_leader(tmp_path / "motion.csv", Trajectory(times, 0.02 * np.sin(9.0 * times)[:, None] * np.ones(4)))
-    parameter_file.save(tmp_path / "table.toml", ParameterTable.defaults().with_raw({"supply_mv": 12000}))
     (tmp_path / "arm.urdf").write_text(urdf(load_arm("default")), encoding="utf-8")
 
 
 def run(verb: str, folder: Path, port: str = "") -> None:
     """The verb in a folder of its own, with the inputs beside it."""
     folder.mkdir(exist_ok=True)
-    for name in ("motion.csv", "table.toml", "arm.urdf"):
+    for name in ("motion.csv", "arm.urdf"):
         if not (folder / name).exists():
             os.link(name, folder / name)
     os.chdir(folder)

@@ -20,7 +20,7 @@ def scaled(host: Any, raw: int, **others: int) -> None:
     set_parameters(host, {f"joint{joint}.ratio": raw for joint in range(4)} | others)
 
 
-def lead(host: Any, angles: list[float], seconds: float = 3.0) -> None:
+def lead(host: Any, angles: list[float], seconds: float = 2.0) -> None:
     host.bench.leader.lead(np.array(angles))
     host.run(seconds)
 

@@ -166,8 +166,3 @@ def test_a_folder_that_cannot_be_made(tmp_path: Path) -> None:
 def test_a_bench_that_dies_is_told_with_its_reason() -> None:
     with pytest.raises(UserError, match="nowhere.csv: cannot be read"):
         BenchProcess("--leader", "nowhere.csv")
-    with BenchProcess("--blank") as bench:
-        bench.command("speed 1")
-        with pytest.raises(UserError, match="not a bench command"):
-            bench.command("explode")
-        assert bench.command("status")["powered"]

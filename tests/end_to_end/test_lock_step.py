@@ -94,6 +94,5 @@ def test_same_bytes_same_trace(lock_step: Any, board_name: str) -> None:
 
     default = schema.PARAMETER_BY_NAME["joint0.kp"].default
     first = trace(default, 1)
-    assert trace(default, 1) == first
     assert trace(default, 40) == first, "nor does it matter in how many pieces time is simulated"
     assert trace(default + 1000, 1) != first, "the trace shows what the controller does"

@@ -14,6 +14,7 @@ import pytest
 from greywhale.base.errors import UserError
 from greywhale.board.device import Device
 from greywhale.board.record import record
+from greywhale.cli.entry import run
 from greywhale.cli.story import BenchProcess
 from greywhale.files.leader import save_leader
 from greywhale.files.log import read_log
@@ -22,8 +23,6 @@ from greywhale.protocol.schema import State
 
 pytestmark = pytest.mark.slow
 Start = Callable[..., BenchProcess]
-
-
 # What a verb is started in, beside its terminal.
 CRON = {"PATH": "/usr/bin:/bin", "HOME": "/"}
 NOTEBOOK = {**CRON, "XDG_RUNTIME_DIR": "/nowhere", "TMPDIR": "/var/tmp"}
@@ -63,22 +62,23 @@ def test_what_runs_ends_with_a_whole_log_whatever_the_environment_of_the_stop(
     assert not log.exists() or not read_log(log).complete
 
 
-def test_a_fault_is_cleared_without_a_restart(start_bench: Start, tmp_path: Path) -> None:
+def test_a_fault_is_cleared_without_a_restart(
+    start_bench: Start, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     bench = start_bench()
     with Device(bench.port) as device, pytest.raises(UserError, match="potentiometer 2"):
-        record(device, tmp_path / "log.csv", 60.0, enable=True, progress=lambda *_: breaks(bench))
+        record(device, tmp_path / "log.csv", 60.0, enable=True, progress=lambda *_: break_a_wire(bench))
     bench.command("pot follower 2 connected")
     resets = bench.command("status")["resets"]
     with Device(bench.port, restart=False) as device:
         assert device.status().state is State.FAULT
-    with greywhale("stop", "--clear-fault", "--port", bench.port, "--json") as stop:
-        answer, _ = stop.communicate()
-    assert json.loads(answer) == {"port": bench.port, "state": "disabled", "restarted": False}
+    assert run(["stop", "--clear-fault", "--port", bench.port, "--json"]) == 0
+    assert json.loads(capsys.readouterr().out) == {"port": bench.port, "state": "disabled", "restarted": False}
     assert bench.command("status")["resets"] == resets
     with Device(bench.port) as device:
         assert device.restarted
     assert bench.command("status")["resets"] == resets + 1
 
 
-def breaks(bench: BenchProcess) -> None:
+def break_a_wire(bench: BenchProcess) -> None:
     bench.command("pot follower 2 open")

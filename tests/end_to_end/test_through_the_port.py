@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 
+from greywhale.base.errors import UserError
 from greywhale.board.device import Device
 from greywhale.board.record import record
 from greywhale.board.upload import upload_controller
@@ -49,6 +50,7 @@ def test_upload_record_evaluate(start_bench: Start, tmp_path: Path) -> None:
 
 HOST_THAT_DIES = """
 import sys
+from greywhale.base.errors import UserError
 from greywhale.board.device import Device
 from greywhale.board.stream import stream
 with Device(sys.argv[1]) as device:
@@ -64,8 +66,13 @@ with Device(sys.argv[1]) as device:
 
 
 @pytest.mark.slow
-def test_a_killed_host_leaves_no_motor_on(start_bench: Start) -> None:
-    bench = start_bench()
+def test_a_killed_host_leaves_no_motor_on_and_a_bench_that_ends_no_link(start_bench: Start, tmp_path: Path) -> None:
+    link = tmp_path / "bench"
+    bench = start_bench("--link", str(link))
+    assert bench.port == str(link)
+    assert link.is_symlink()
+    with pytest.raises(UserError, match="not a bench command"):
+        bench.command("explode")
     with subprocess.Popen([sys.executable, "-c", HOST_THAT_DIES, bench.port], stdout=subprocess.PIPE) as host:
         try:
             assert host.stdout is not None
@@ -79,14 +86,6 @@ def test_a_killed_host_leaves_no_motor_on(start_bench: Start) -> None:
         pass  # simulated time goes on, in real time now that nobody is connected
     assert not now["motors_enabled"]
     assert now["resets"] == before["resets"], "off by its own lease, not by a reset"
-
-
-@pytest.mark.slow
-def test_the_bench_ends_with_its_parent_and_leaves_no_link(start_bench: Start, tmp_path: Path) -> None:
-    link = tmp_path / "bench"
-    bench = start_bench("--link", str(link))
-    assert bench.port == str(link)
-    assert link.is_symlink()
     bench.close()
     assert bench.exit_code == 0
     assert not link.is_symlink()
