@@ -35,7 +35,7 @@ def test_the_demo_tells_its_story_and_proves_its_controllers_on_the_arm(
     monkeypatch.setattr(story, "PROVING_TRIALS", 1)
     monkeypatch.setattr(search, "PACKS", ((0.1, 12),))
     monkeypatch.setattr(search, "POOR", 1e9)
-    short = {"REACHES_S": 2.0, "HOLD_S": 0.5, "SLOW_S": 1.0, "PAUSE_S": 0.3, "MOVES": (0.5, -0.9)}
+    short = {"REACHES_S": 2.0, "HOLD_S": 0.5, "SLOW_S": 1.0, "PAUSE_S": 0.3, "MOVES": (0.5,), "REST_S": 0.5}
     short |= {"SMALL_RAD": (0.1, 0.0), "STILL_SHARES": (0.6, 0.0), "STILL_HOLD_S": 0.3}
     for name, value in short.items():
         monkeypatch.setattr(motions, name, value)

@@ -104,7 +104,7 @@ def test_the_supply_is_known_of_a_log_with_its_parameters_or_with_the_defaults()
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("joints", [(0, 1), (2,), (0, 1, 3)])
+@pytest.mark.parametrize("joints", [(2,), (0, 1, 3)])
 def test_only_joints_in_use_have_a_panel(joints: tuple[int, ...]) -> None:
     one = replace(trace(log(0.8), "before"), joints=joints)
     with style():
