@@ -65,7 +65,6 @@ def no_floors(monkeypatch: pytest.MonkeyPatch) -> None:
         (("--budget", "1" + 30 * "0"), f"budget is 1{30 * '0'}, but it must be at most 1000000."),
         (("--seed", "2147483648"), "seed is 2147483648, but it must be at most 2147483647."),
         (("--workers", "100000"), "workers is 100000, but it must be at most 1024."),
-        (("--samples", "1000000"), "samples is 1000000, but it must be at most 1000."),
         (("--bounds", "Ku=3..9", "--bounds", "ku=3..8"), "--bounds ku=3..8: Ku has bounds already; give them once."),
         (("--out", "/dev/null"), "/dev/null: cannot be written: not an ordinary file; write elsewhere."),
         (("--resume",), "controller.toml.journal: no interrupted tuning is there to go on with; leave --resume out."),

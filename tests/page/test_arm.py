@@ -20,7 +20,9 @@ def look_from(page: Page, stage: Stage, side: str) -> None:
     page.wait_for_function("seen => document.querySelector('.stage canvas').dataset.tick > seen", arg=tick)
 
 
-def test_the_arm_is_drawn_where_the_board_says(shared_page: Page, stage: Stage) -> None:
+def test_the_arm_is_drawn_where_the_board_says_and_leads_by_a_link_that_is_dragged(
+    shared_page: Page, stage: Stage
+) -> None:
     page = shared_page
     asked: list[str] = []
     page.on("request", lambda request: asked.append(request.url.rpartition("/")[2]))
@@ -28,21 +30,16 @@ def test_the_arm_is_drawn_where_the_board_says(shared_page: Page, stage: Stage) 
     assert not any(name.startswith("scene") for name in asked)
     page.get_by_role("button", name="Arm", exact=True).click()
     expect(page.get_by_text("default arm: solid is the follower")).to_be_visible()
+    expect(page.get_by_text("Drag a link to lead")).to_be_visible()
     canvas = page.get_by_role("img", name="The arm")
     look_from(page, stage, "Side")
     picture = Image.open(io.BytesIO(canvas.screenshot())).convert("RGB")
     assert len(picture.getcolors(1 << 20) or []) > 50  # an empty canvas has one
-
-
-def test_a_link_dragged_in_the_picture_leads(shared_page: Page, stage: Stage) -> None:
-    page = shared_page
-    page.get_by_role("button", name="Arm", exact=True).click()
-    expect(page.get_by_text("Drag a link to lead")).to_be_visible()
     look_from(page, stage, "Top")
-    canvas = page.get_by_role("img", name="The arm").bounding_box()
-    assert canvas is not None
+    place = canvas.bounding_box()
+    assert place is not None
     # From above, the base stands left of the middle, and the hand reaches beyond it to the right.
-    x, y = canvas["x"] + canvas["width"] / 2, canvas["y"] + canvas["height"] / 2
+    x, y = place["x"] + place["width"] / 2, place["y"] + place["height"] / 2
     before = stage.newest().leader
     page.mouse.move(x + 60, y)
     page.mouse.down()

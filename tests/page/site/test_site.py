@@ -137,13 +137,11 @@ def test_who_stops_before_the_arm_has_moved_is_obeyed(context: BrowserContext, s
     assert set(read_log(tmp_path / "view.csv").state) == {"disabled"}
 
 
-def tune_a_little(page: Page) -> None:
-    """Let the page tune, and end that as soon as it can be."""
+def begin_to_tune(page: Page) -> None:
+    """Until the search, which runs beside the page, has told of itself."""
     page.get_by_role("button", name="Controller", exact=True).click()
     page.get_by_role("button", name="Tune", exact=True).click()
     expect(page.get_by_text("of 500 sets")).to_be_visible()
-    page.get_by_role("button", name="Stop the search").click()
-    expect(page.get_by_text("Found; Apply runs it.")).to_be_visible()
 
 
 @opened("controller")
@@ -151,7 +149,9 @@ def test_who_lets_the_page_tune_sees_the_course_and_runs_what_was_found(visited:
     await_state(visited, "following")
     visited.get_by_role("button", name="Controller", exact=True).click()
     drag(visited, "Pe_b", 0.1)
-    tune_a_little(visited)
+    begin_to_tune(visited)
+    visited.get_by_role("button", name="Stop the search").click()
+    expect(visited.get_by_text("Found; Apply runs it.")).to_be_visible()
     expect(visited.get_by_label("Curve of the search")).to_be_visible()
     expect(visited.get_by_label("The same hand, followed before and after")).to_be_visible()
     visited.get_by_role("button", name="Apply").click()
@@ -165,7 +165,7 @@ def test_one_file_alone_opens_from_a_disk_and_tunes(context: BrowserContext, fol
     with stages.visit(context, OnDisk(alone.as_uri())) as visit:
         await_state(visit.page, "following")
         visit.page.locator("canvas").first.wait_for()
-        tune_a_little(visit.page)
+        begin_to_tune(visit.page)
 
 
 def test_it_opens_without_a_network_after_the_first_visit_and_a_new_build_shows_at_once(
