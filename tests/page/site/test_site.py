@@ -75,6 +75,7 @@ def test_a_visitor_sees_an_arm_that_follows_and_what_needs_a_host_is_not_there(v
     )
     visited.get_by_role("button", name="Bench").click()
     expect(visited.get_by_role("button", name="Hold still")).to_be_visible()
+    expect(visited.get_by_label("Speed of time, ×")).to_be_visible()
     expect(visited.get_by_label("Recorded motion")).to_have_count(0)
     visited.keyboard.press("Space")
     await_state(visited, "disabled")
