@@ -25,7 +25,7 @@ from greywhale_sim.lockstep import LockStepBench
 from greywhale_sim.words import lock_step
 
 BACKUP = "before-calibration.toml"
-SWEEP_S = 0.5  # a way; a person is slower
+SWEEP_S, POSE_S = 0.5, 1.0  # a way, and to a pose; a person is slower
 SECOND_DEG = np.array([60.0, 50.0, -45.0, 40.0])
 THIRD_DEG = np.array([-35.0, -20.0, 30.0, -40.0])
 TRACK_RAD, CENTRE_RAD = (4.7, 5.8), (-0.6, 0.6)
@@ -73,6 +73,8 @@ class Hands:
 
     bench: RunningBench
     second: Floats = field(default_factory=SECOND_DEG.copy)
+    sweep_s: float = SWEEP_S
+    pose_s: float = POSE_S
     apart: float = 0.0  # degrees by which the follower's joint 1 is held elsewhere in the third pose
     poses: int = 0
     patient: bool = False
@@ -98,17 +100,17 @@ class Hands:
     def follow(self, asked: str) -> None:
         """Do what a line of `greywhale calibrate` asks."""
         if sweep := re.match(r"Sweep .*: (leader|follower) joint (\d)", asked):
-            self.begin(f"turn {sweep[1]} {sweep[2]} {SWEEP_S}")
+            self.begin(f"turn {sweep[1]} {sweep[2]} {self.sweep_s}")
         elif asked.startswith("Each motor"):
             self.begin("hang")
         elif " pose" in asked:
             self.poses += 1
             pose = {2: self.second, 4: THIRD_DEG}.get(self.poses, np.zeros(JOINTS))
-            self.begin(_hand("both", pose))
+            self.begin(_hand("both", pose, self.pose_s))
             if self.poses == 4 and self.apart:
-                self.begin(_hand("follower", pose + self.apart * np.eye(JOINTS)[1]))
+                self.begin(_hand("follower", pose + self.apart * np.eye(JOINTS)[1], self.pose_s))
 
-    def bring(self, side: str, degrees: Floats, seconds: float = 1.0) -> None:
+    def bring(self, side: str, degrees: Floats, seconds: float = POSE_S) -> None:
         """Bring one arm or both there, and wait until they are."""
         self.do(_hand(side, degrees, seconds))
 
@@ -125,8 +127,13 @@ class Hands:
         return float(self.bench.command("status")["time_s"])
 
 
-def _hand(side: str, degrees: Floats, seconds: float = 1.0) -> str:
+def _hand(side: str, degrees: Floats, seconds: float) -> str:
     return f"hand {side} {' '.join(f'{angle:.6f}' for angle in np.radians(degrees))} {seconds}"
+
+
+def quick_hands(bench: RunningBench) -> Hands:
+    """For tests of what does not depend on the pace."""
+    return Hands(bench, sweep_s=0.3, pose_s=0.3)
 
 
 @dataclass(frozen=True)

@@ -102,12 +102,11 @@ def go_to_the_pulses(session: Session, hands: Hands) -> None:
 def test_mistakes_and_early_keys_cost_nothing_and_only_a_yes_stores(bench: BenchProcess, tmp_path: Path) -> None:
     hands = Hands(bench)
     with Session(bench.port, tmp_path) as session:
-        for _ in range(4):
-            session.until("Sweep 1 of 2: leader joint 0, base yaw.")
-            session.enter()
-            session.until("did not move")
-            session.until("mend it")
-            session.enter()
+        session.until("Sweep 1 of 2: leader joint 0, base yaw.")
+        session.enter()
+        session.until("did not move")
+        session.until("mend it")
+        session.enter()
         session.until("Sweep 1 of 2")
         session.enter("back")
         session.until("This is the first step.")

