@@ -40,7 +40,6 @@ class Faults:
     lose: Counter[int] = field(default_factory=Counter)  # request type -> how many answers get lost
     refuse: dict[int, tuple[NackCode, int]] = field(default_factory=dict)  # request type -> nack
     refuse_times: Counter[int] = field(default_factory=Counter)  # request type -> how often (0: always)
-    garbage: bytes = b""  # before every answer
     hello: bytes | None = None  # instead of the right payload
     replies: dict[int, bytes] = field(default_factory=dict)  # request type -> payload instead of the right one
     echo_error: int = 0  # added to the echoed value of param_set
@@ -258,7 +257,7 @@ class FakeBoard:
         self._answer(kind | schema.REPLY_BIT, seq, reply)
 
     def _answer(self, kind: int, seq: int, payload: bytes) -> None:
-        self.say(self.faults.garbage + encode_frame(kind, seq, payload))
+        self.say(encode_frame(kind, seq, payload))
 
     def _reply(self, kind: int, payload: bytes) -> bytes:
         match kind:

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from greywhale.base.errors import UserError
-from greywhale.board.device import Device
 from greywhale.board.pots import (
     FOLLOWERS,
     FULL_SCALE,
@@ -21,7 +20,7 @@ from greywhale.board.pots import (
 from greywhale.protocol import schema
 from greywhale.protocol.schema import Fault
 from greywhale.protocol.table import ParameterTable
-from tests.board.fake_board import FakeBoard
+from tests.board.fake_board import served
 
 TABLE = ParameterTable.defaults()
 
@@ -43,12 +42,8 @@ def test_one_reading_at_a_rail_is_enough_and_is_told_in_a_sentence() -> None:
     assert told.startswith("leader potentiometer 2 reads 0..500 of 1023, at a rail (pot_low): check that")
 
 
-def test_without_rail_counts_nothing_is_a_rail() -> None:
-    assert PotReadings(np.zeros((LOOKS, 8), dtype=np.int64), 0).complaints() == []
-
-
 def test_an_arm_with_a_broken_potentiometer_among_those_that_count_is_refused() -> None:
-    with FakeBoard() as board, Device(board.port, quiet_s=0.0, patience_s=0.5) as device:
+    with served() as (board, device):
         table = TABLE.with_raw({"leader2.zero": 5})  # its angle is then below the track
         require_good_pots(device, table, FOLLOWERS)
         with pytest.raises(UserError, match=rf"^{board.port}: leader potentiometer 2 reads 0..0 of 1023, at a rail"):
@@ -56,7 +51,7 @@ def test_an_arm_with_a_broken_potentiometer_among_those_that_count_is_refused() 
 
 
 def test_the_counts_are_those_that_the_board_has_converted() -> None:
-    with FakeBoard() as board, Device(board.port, quiet_s=0.0, patience_s=0.5) as device:
+    with served() as (board, device):
         found = read_pots(device, TABLE)
         assert board.asked(schema.TelemetryRequest) == 2, "on, and off again"
     assert found.counts.shape == (LOOKS, len(POTS))
@@ -73,4 +68,6 @@ def test_a_potentiometer_that_is_not_there_reads_nothing_wrong() -> None:
     (counts,) = counts_of([sample], table)
     assert counts[7] == FULL_SCALE / 2
     assert counts[6] == pytest.approx(8184 / 16)
-    assert PotReadings(np.zeros((LOOKS, 8), dtype=np.int64), 4, (0,)).complaints(range(1, 8)) == []
+    zeros = np.zeros((LOOKS, 8), dtype=np.int64)
+    assert PotReadings(zeros, 4, (0,)).complaints(range(1, 8)) == []
+    assert PotReadings(zeros, 0).complaints() == [], "without rail counts nothing is a rail"

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import multiprocessing
-from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
@@ -49,8 +48,6 @@ def test_threads_change_nothing(serial: dict[str, Any]) -> None:
 @pytest.mark.slow
 def test_processes_change_nothing(serial: dict[str, Any]) -> None:
     assert same(run_study(SOME, LocalWorkers(2)), serial)
-    with ProcessPoolExecutor(2, mp_context=multiprocessing.get_context("spawn")) as pool:
-        assert same(run_study(SOME, pool), serial)
 
 
 def test_a_finished_study_is_not_done_again(tmp_path: Path) -> None:
