@@ -1,10 +1,10 @@
-"""Sentences for people: numbers within their range, and things counted."""
+"""Sentences for people: numbers within their range, and never longer than a person reads."""
 
 from __future__ import annotations
 
 import pytest
 
-from greywhale.base.errors import BAD_USAGE, UserError, require_within
+from greywhale.base.errors import BAD_USAGE, LONGEST, UserError, require_within
 
 
 def test_numbers_keep_their_range() -> None:
@@ -14,3 +14,7 @@ def test_numbers_keep_their_range() -> None:
         with pytest.raises(UserError) as refused:
             require_within("seeds", value, 1, 9)
         assert (refused.value.message, refused.value.exit_code) == (words, BAD_USAGE)
+
+
+def test_a_sentence_of_any_length_is_cut() -> None:
+    assert len(UserError(f"{'x' * 5000}.").message) <= LONGEST

