@@ -29,7 +29,7 @@ int main(void) {{
 
 
 @pytest.mark.parametrize("chip", CHIPS)
-@pytest.mark.parametrize(("select", "prescaler"), [(4, 16), (5, 32), (6, 64), (7, 128)])
+@pytest.mark.parametrize(("select", "prescaler"), [(4, 16), (7, 128)])
 def test_free_running_conversions_take_13_adc_clocks_and_the_first_25(
     program: MakeProgram, chip: str, select: int, prescaler: int
 ) -> None:
@@ -76,22 +76,10 @@ int main(void) {
 
 
 @pytest.mark.parametrize("chip", CHIPS)
-@pytest.mark.parametrize(
-    ("input_mv", "count"),
-    [(0, 0), (4.8, 0), (4.9, 1), (1234.5, 252), (2500, 512), (4995, 1022), (5000, 1023), (6000, 1023)],
-)
-def test_the_result_is_the_input_over_the_reference(
-    program: MakeProgram, chip: str, input_mv: float, count: int
-) -> None:
+def test_the_result_is_the_channels_input_over_the_reference(program: MakeProgram, chip: str) -> None:
     run = program(EACH, chip)
-    for channel in range(8):
-        volts = np.zeros(8)
-        volts[channel] = input_mv
-        run.board.set_millivolts(volts)
-        run.finish()
-        expected = [0] * 8
-        expected[channel] = count
-        assert run.u16("result") == expected
+    run.board.set_millivolts(millivolts(0, 4.9, 4.8, 1234.5, 2500, 4995, 5000, 6000))
+    assert run.finish().u16("result") == [0, 1, 0, 252, 512, 1022, 1023, 1023]
 
 
 def test_a_floating_input_reads_what_the_conversion_before_left(program: MakeProgram) -> None:

@@ -11,14 +11,10 @@ import pytest
 from greywhale_sim._board import Board, BoardError
 from greywhale_sim.programs import load_elf, load_hex
 from greywhale_sim.symbols import read_symbols
+from tests.board.flash.hex_files import record
 from tests.simulated_board.avr import Compile, MakeProgram
 
 END = ":00000001FF\n"
-
-
-def record(address: int, kind: int, data: bytes) -> str:
-    body = bytes([len(data), address >> 8, address & 255, kind]) + data
-    return f":{body.hex().upper()}{-sum(body) & 255:02X}\n"
 
 
 def write(folder: Path, text: str) -> str:
@@ -29,8 +25,8 @@ def write(folder: Path, text: str) -> str:
 
 def test_hex_data_goes_where_its_base_address_says(tmp_path: Path) -> None:
     board = Board("atmega2560")
-    text = record(0x10, 0, b"low") + record(0, 2, b"\x10\x00") + record(0x20, 0, b"segment") + record(0, 4, b"\x00\x03")
-    load_hex(board, write(tmp_path, text + record(0x30, 0, b"linear") + END))
+    text = record(0, 0x10, b"low") + record(2, 0, b"\x10\x00") + record(0, 0x20, b"segment") + record(4, 0, b"\x00\x03")
+    load_hex(board, write(tmp_path, text + record(0, 0x30, b"linear") + END))
     flash = board.flash()
     assert len(flash) == 256 * 1024
     assert flash[0x10:0x13] == b"low"
@@ -44,7 +40,7 @@ def test_hex_data_goes_where_its_base_address_says(tmp_path: Path) -> None:
 def test_a_program_without_room_is_one_sentence_and_nothing_of_it_is_written(tmp_path: Path) -> None:
     """What else a HEX file may have wrong is in tests/board/flash/test_images.py."""
     board = Board("atmega328p")
-    path = write(tmp_path, record(0, 0, b"abc") + record(0x8000, 0, b"abc") + END)
+    path = write(tmp_path, record(0, 0, b"abc") + record(0, 0x8000, b"abc") + END)
     with pytest.raises(BoardError, match=rf"^{path} .*up to address 0x8002, but the ATmega328P has 32 KB of flash; "):
         load_hex(board, path)
     assert board.flash() == b"\xff" * 32768

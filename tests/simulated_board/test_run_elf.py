@@ -7,6 +7,7 @@ import sys
 
 import pytest
 
+from greywhale_sim.run_elf import main
 from tests.simulated_board.avr import Compile
 
 PRINT = """
@@ -22,25 +23,30 @@ int main(void) {
 """
 
 
-def run_elf(*arguments: str) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, "-m", "greywhale_sim.run_elf", *arguments]
-    return subprocess.run(command, capture_output=True, text=True, check=False)
-
-
-@pytest.mark.parametrize("chip", ["atmega2560", "atmega328p"])
-@pytest.mark.parametrize(("voltages", "word"), [("0,4000", "high"), ("5000", "low")])
+@pytest.mark.parametrize(
+    ("chip", "voltages", "word"), [("atmega2560", "0,4000", "high"), ("atmega328p", "5000", "low")]
+)
 def test_it_prints_what_the_program_sends_and_ends_with_it(
     compile_avr: Compile, chip: str, voltages: str, word: str
 ) -> None:
     path = compile_avr(PRINT.replace("END", "DONE();"), chip)
-    result = run_elf(str(path), "--mcu", chip, "--millivolts", voltages)
+    command = [sys.executable, "-m", "greywhale_sim.run_elf", path, "--mcu", chip, "--millivolts", voltages]
+    result = subprocess.run(command, capture_output=True, text=True, check=False)
     assert (result.returncode, result.stdout, result.stderr) == (0, f"test.cpp:1:first:PASS\n{word}\n", "")
 
 
-def test_a_hang_and_a_crash_are_failures_with_the_output_so_far(compile_avr: Compile) -> None:
-    hung = run_elf(str(compile_avr(PRINT.replace("END", "for (;;);"), "atmega2560")), "--limit-s", "0.1")
-    assert (hung.returncode, hung.stdout) == (1, "test.cpp:1:first:PASS\nlow\n")
-    assert "did not end within 0.1 s of simulated time" in hung.stderr
-    crashed = run_elf(str(compile_avr(PRINT.replace("END", "*(volatile uint8_t *)0x7000 = 1;"), "atmega2560")))
-    assert (crashed.returncode, crashed.stdout) == (1, "test.cpp:1:first:PASS\nlow\n")
-    assert "crashed at address 0x" in crashed.stderr
+@pytest.mark.parametrize(
+    ("end", "words"),
+    [
+        ("for (;;);", "did not end within 0.1 s of simulated time"),
+        ("*(volatile uint8_t *)0x7000 = 1;", "crashed at address 0x"),
+    ],
+    ids=["a hang", "a crash"],
+)
+def test_a_failure_comes_with_the_output_so_far(
+    compile_avr: Compile, capsys: pytest.CaptureFixture[str], end: str, words: str
+) -> None:
+    assert main([str(compile_avr(PRINT.replace("END", end), "atmega2560")), "--limit-s", "0.1"]) == 1
+    said = capsys.readouterr()
+    assert said.out == "test.cpp:1:first:PASS\nlow\n"
+    assert words in said.err
