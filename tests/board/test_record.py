@@ -99,13 +99,13 @@ def test_every_thins_the_samples(tmp_path: Path) -> None:
     assert np.allclose(np.diff(log.time), 0.02)
 
 
-def test_lost_samples_are_counted_and_not_invented(tmp_path: Path) -> None:
-    lost = frozenset({150, 151, 152, 300})
-    with FakeBoard(Faults(lose_ticks=lost)) as board, open_device(board) as device:
-        recording = record(device, tmp_path / "log.csv", 0.5)
-    log = read_log(tmp_path / "log.csv")
+def test_lost_samples_are_counted_and_not_invented_and_one_that_comes_twice_is_taken_once(out: Path) -> None:
+    lost, twice = frozenset({150, 151, 152, 300}), frozenset({20, 21, 50})
+    with served(Faults(lose_ticks=lost, repeat_ticks=twice)) as (_, device):
+        recording = record(device, out, 0.5)
+    log = read_log(out)
     assert recording.dropped == log.dropped == 4
-    assert len(log.time) == 500 - 4
+    assert len(log.time) == recording.rows == 500 - 4
     steps = np.round(np.diff(log.time) * 1000)
     assert sorted(steps[steps != 1]) == [2, 4]
 
@@ -203,10 +203,3 @@ def test_bad_settings_are_bad_usage(tmp_path: Path, seconds: float, every: int, 
     with FakeBoard() as board, open_device(board) as device, pytest.raises(UserError, match=words) as caught:
         record(device, tmp_path / "log.csv", seconds, every, enable)
     assert caught.value.exit_code == 2
-
-
-def test_a_sample_that_comes_twice_is_taken_once(tmp_path: Path) -> None:
-    with FakeBoard(Faults(repeat_ticks=frozenset({20, 21, 50}))) as board, open_device(board) as device:
-        recording = record(device, tmp_path / "log.csv", 0.2)
-    assert (recording.rows, recording.dropped) == (200, 0)
-    assert len(read_log(tmp_path / "log.csv").time) == 200

@@ -77,9 +77,17 @@ class Asker(threading.Thread):
             self._now.set()
 
 
-def listen(device: Device) -> None:
-    while True:
-        device.samples()
+def stopped(board: PortBoard, name: str = "", meanwhile: Callable[[Device], None] | None = None) -> None:
+    """A session on the board is stopped by who calls its port so."""
+    with Asker(name or board.port) as other:
+        with pytest.raises(KeyboardInterrupt), open_device(board) as device:
+            if meanwhile is not None:
+                meanwhile(device)
+            other.ask()
+            while True:
+                device.samples()
+        other.join()
+    assert other.answer == STOPPED
 
 
 def recorded(board: PortBoard, path: Path, report: Callable[[str, float], None]) -> None:
@@ -173,8 +181,17 @@ def test_a_stop_that_is_not_confirmed_is_told(tmp_path: Path) -> None:
     assert "within 500 ms" in other.problem
 
 
-def test_what_holds_a_port_now_and_then_is_stopped_in_between() -> None:
-    """As a commissioning that tunes: it must not move the arm any more."""
+def test_an_interrupt_that_comes_just_before_a_long_wait_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Here the signal goes to another thread: the main thread's system call does not end by it, as in that race. The
+    session holds a port now and then, as a commissioning that tunes: it must not move the arm any more.
+    """
+    kill = signal.pthread_kill
+
+    def kill_without_waking(thread: int, number: int) -> None:
+        kill(threading.get_ident() if number == signal.SIGINT else thread, number)
+
+    monkeypatch.setattr(signal, "pthread_kill", kill_without_waking)
+    before = signal.getsignal(signal.SIGURG)
     with PortBoard() as board, Asker(board.port) as other:
         with pytest.raises(KeyboardInterrupt) as caught, Session.of(board.port):
             with open_device(board):
@@ -184,23 +201,6 @@ def test_what_holds_a_port_now_and_then_is_stopped_in_between() -> None:
         other.join()
     assert other.answer == {"pid": os.getpid(), "state": None}
     assert caught.value.__notes__ == [NOTE]
-
-
-def test_an_interrupt_that_comes_just_before_a_long_wait_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Here the signal goes to another thread: the main thread's system call does not end by it, as in that race."""
-    kill = signal.pthread_kill
-
-    def kill_without_waking(thread: int, number: int) -> None:
-        kill(threading.get_ident() if number == signal.SIGINT else thread, number)
-
-    monkeypatch.setattr(signal, "pthread_kill", kill_without_waking)
-    before = signal.getsignal(signal.SIGURG)
-    with PortBoard() as board, Asker(board.port) as other:
-        with pytest.raises(KeyboardInterrupt), Session.of(board.port):
-            other.ask()
-            threading.Event().wait()
-        other.join()
-    assert other.answer == {"pid": os.getpid(), "state": None}
     assert signal.getsignal(signal.SIGURG) is before
 
 
@@ -282,13 +282,8 @@ def squat(monkeypatch: pytest.MonkeyPatch, names: list[str]) -> AbstractContextM
 
 
 def test_another_user_who_takes_a_name_first_hinders_nobody(monkeypatch: pytest.MonkeyPatch) -> None:
-    with PortBoard() as board, squat(monkeypatch, names(board)[:-1]), Asker(board.port) as other:
-        with pytest.raises(KeyboardInterrupt), open_device(board) as device:
-            device.enable(0)
-            other.ask()
-            listen(device)
-        other.join()
-    assert other.answer == STOPPED
+    with PortBoard() as board, squat(monkeypatch, names(board)[:-1]):
+        stopped(board, meanwhile=lambda device: device.enable(0))
 
 
 def test_no_motor_starts_where_nothing_could_stop_it(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -313,26 +308,21 @@ def test_where_only_ctrl_c_stops_it_that_is_said_before_the_motors_start(
 
 
 def test_a_port_is_found_by_whatever_name(tmp_path: Path) -> None:
-    with PortBoard() as board, Asker(str(tmp_path / "arm")) as other:
+    with PortBoard() as board:
         (tmp_path / "arm").symlink_to(board.port)
-        with pytest.raises(KeyboardInterrupt), open_device(board) as device:
-            other.ask()
-            listen(device)
-        other.join()
+        stopped(board, str(tmp_path / "arm"))
         assert board.asked(schema.StopRequest) > 0, "also where no motor was on"
-    assert other.answer == STOPPED
 
 
-def test_clients_that_say_nothing_hinder_nobody(monkeypatch: pytest.MonkeyPatch) -> None:
-    with PortBoard() as board, contextlib.ExitStack() as stack, Asker(board.port) as other:
-        with pytest.raises(KeyboardInterrupt), open_device(board) as device:
+def test_clients_that_say_nothing_hinder_nobody() -> None:
+    with PortBoard() as board, contextlib.ExitStack() as stack:
+
+        def crowd(device: Device) -> None:
             for _ in range(meeting.MOST_CLIENTS + 3):
                 stack.enter_context(connected(board))
                 device.status()
-            other.ask()
-            listen(device)
-        other.join()
-    assert other.answer == STOPPED
+
+        stopped(board, meanwhile=crowd)
 
 
 def test_a_client_that_says_something_else_stops_nothing() -> None:
@@ -360,7 +350,8 @@ def test_a_client_that_does_not_wait_for_the_answer_is_heard() -> None:
     with PortBoard() as board, pytest.raises(KeyboardInterrupt), open_device(board) as device:
         with connected(board) as client:
             client.sendall(b"stop\n")
-        listen(device)
+        while True:
+            device.samples()
 
 
 def test_the_names_are_the_users_own(monkeypatch: pytest.MonkeyPatch) -> None:

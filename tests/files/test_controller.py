@@ -25,7 +25,7 @@ SETS = {
 GAINS = {"kp": 0.5, "kd": 0.1, "ki": 0.2, "ku": 15.0}
 
 
-def text(joint: int = 0, **changes: float | str) -> str:
+def text(joint: int = 0, **changes: float) -> str:
     """Four joints, of which one differs."""
     lines = []
     for number in range(4):
@@ -69,13 +69,9 @@ def test_before_tuning_is_what_the_firmware_starts_with() -> None:
         ({"ku": 31.0}, "joint[2]: ku is 31, but it must lie within 0..30"),
         ({"kp": 1e-9}, "joint[2].kp is 1e-09, which the board would store as 0; give 0, or at least 1.52588e-05."),
         ({"ku": 0.0001}, "joint[2].ku is 0.0001, which the board would store as 0; give 0, or at least 0.001."),
-        ({"kd": "nan"}, "joint[2].kd is nan; it must be a finite number"),
-        ({"kd": "'0.1'"}, 'joint[2].kd is "0.1", but it should be a valid number'),
     ],
 )
-def test_values_out_of_range_name_key_value_and_range(
-    tmp_path: Path, changes: dict[str, float | str], words: str
-) -> None:
+def test_values_out_of_range_name_key_value_and_range(tmp_path: Path, changes: dict[str, float], words: str) -> None:
     with pytest.raises(UserError, match=re.escape(f"{tmp_path}/controller.toml: {words}")):
         load(tmp_path, text(2, **changes))
 

@@ -117,21 +117,7 @@ def test_the_watchdog_resets_a_hung_program_after_its_time(program: MakeProgram,
     assert run.board.cycle == pytest.approx(19 * 160_000 + 64e-3 * 16e6, rel=0.01)
 
 
-def test_the_watchdog_stays_on_after_its_reset_until_the_program_turns_it_off(program: MakeProgram) -> None:
-    source = """
-    volatile uint8_t resets __attribute__((section(".noinit")));
-    int main(void) {
-        if (MCUSR & _BV(PORF)) { MCUSR = 0; resets = 0; wdt_enable(WDTO_15MS); } else ++resets;
-        if (resets == 3) { MCUSR = 0; wdt_disable(); DONE(); }
-        for (;;);
-    }
-    """
-    run = program(source).finish()
-    assert run.board.stats().watchdog_resets == 3
-    assert run.board.cycle == pytest.approx(3 * 16e-3 * 16e6, rel=0.01)
-
-
-def test_the_reset_pin_does_not_end_the_watchdogs_resets_but_a_power_cut_does(program: MakeProgram) -> None:
+def test_neither_its_reset_nor_the_reset_pin_ends_the_watchdog_but_a_power_cut_does(program: MakeProgram) -> None:
     """The flag WDRF keeps the watchdog on; a bootloader that leaves it set never gets beyond 16 ms."""
     source = "int main(void) { if (MCUSR & _BV(PORF)) { MCUSR = 0; wdt_enable(WDTO_15MS); } for (;;); }"
     run = program(source).start()

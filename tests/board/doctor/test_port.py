@@ -21,17 +21,12 @@ def terminal() -> str:
     return os.ttyname(slave)
 
 
-def test_a_port_that_is_not_there_is_bad_and_nothing_else_is_asked(tmp_path: Path) -> None:
-    (found,) = examine_port(str(tmp_path / "none"))
-    assert found.verdict is Verdict.BAD
-    assert "There is no port" in found.says
-
-
-def test_a_file_is_no_port(tmp_path: Path) -> None:
+def test_what_is_no_port_is_bad_and_nothing_else_is_asked(tmp_path: Path) -> None:
     (tmp_path / "file").touch()
-    (found,) = examine_port(str(tmp_path / "file"))
-    assert found.verdict is Verdict.BAD
-    assert "not a serial port" in found.says
+    for name, says in (("none", "There is no port"), ("file", "not a serial port")):
+        (found,) = examine_port(str(tmp_path / name))
+        assert found.verdict is Verdict.BAD
+        assert says in found.says
 
 
 def test_a_port_that_may_be_opened_is_good(terminal: str) -> None:

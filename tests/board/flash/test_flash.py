@@ -22,7 +22,7 @@ from tests.board.flash.fake_bootloader import ATMEGA328P, MEGA2560, FakeBootload
 from tests.board.flash.hex_files import write_image
 from tests.board.port_board import PortBoard
 
-MEGA, NANO = BOARDS["mega"], BOARDS["nano"]
+MEGA = BOARDS["mega"]
 
 
 @pytest.fixture
@@ -135,16 +135,9 @@ def test_a_board_that_is_named_wrongly_is_recognised_by_its_port_and_its_firmwar
         module.flash("/dev/ttyACM0", "nano")
 
 
-@pytest.mark.parametrize(
-    ("bootloader", "signature", "other"),
-    [(Version2, MEGA2560, NANO), (Version1, ATMEGA328P, MEGA)],
-    ids=["a Mega", "a Nano"],
-)
-def test_a_board_that_nobody_names_is_asked_and_gets_no_image_of_the_other(
-    bootloader: type[FakeBootloader], signature: bytes, other: object, told: Path, tmp_path: Path
-) -> None:
-    image = write_image(tmp_path / "firmware.hex", ATMEGA328P if other is NANO else MEGA2560)
-    with bootloader(115200, signature) as line, pytest.raises(UserError, match="for an Arduino"):
+def test_a_board_that_nobody_names_is_asked_and_gets_no_image_of_the_other(told: Path, tmp_path: Path) -> None:
+    image = write_image(tmp_path / "firmware.hex", ATMEGA328P)
+    with Version2(115200, MEGA2560) as line, pytest.raises(UserError, match="for an Arduino"):
         module.flash(line.port, hex_file=image)
     assert not told.exists()
 
