@@ -11,7 +11,6 @@ import itertools
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from types import TracebackType
 from typing import Self
 
 from greywhale.base.errors import UserError
@@ -103,9 +102,7 @@ class FakeBoard:
         LINES[self.port] = self.open
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, kind: object, error: BaseException | None, trace: object) -> None:
         del LINES[self.port]
 
     def asked(self, request: type[Message]) -> int:

@@ -17,7 +17,6 @@ import threading
 import time
 import tty
 from collections.abc import Iterator
-from types import TracebackType
 from typing import Self
 
 from greywhale.protocol.schema import State
@@ -52,9 +51,7 @@ class PortBoard(FakeBoard):
         self._thread.start()
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, kind: object, error: BaseException | None, trace: object) -> None:
         self._end.set()
         os.write(self._wake_in, b"x")
         self._thread.join(10)

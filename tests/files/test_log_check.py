@@ -31,8 +31,8 @@ def write(path: Path, count: int = 300) -> None:
             log.append(0.005 * row, [angle] * 4, [angle - 0.01] * 4, [0.1 * (row % 7)] * 4, "following")
 
 
-def edited(path: Path, edit: Callable[[Rows], Rows], count: int = 300) -> Log:
-    write(path, count)
+def edited(path: Path, edit: Callable[[Rows], Rows]) -> Log:
+    write(path)
     lines = path.read_text().splitlines()
     head = next(place for place, line in enumerate(lines) if line.startswith("time_s")) + 1
     rows = edit([line.split(",") for line in lines[head:]])

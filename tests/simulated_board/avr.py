@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import struct
+from collections.abc import Callable
 from pathlib import Path
 from typing import Protocol
 
@@ -34,6 +35,8 @@ int main(void) {
 }
 """
 DONE = 1
+# compile_avr(source, chip): the linked program; the same source is compiled once.
+Compile = Callable[[str, str], Path]
 
 
 class Program:
@@ -69,12 +72,6 @@ class Program:
 
     def set_u8(self, name: str, value: int) -> None:
         self.board.poke(self.symbols[name].address, bytes([value]))
-
-
-class Compile(Protocol):
-    """compile_avr(source, chip): the linked program; the same source is compiled once."""
-
-    def __call__(self, source: str, chip: str) -> Path: ...
 
 
 class MakeProgram(Protocol):

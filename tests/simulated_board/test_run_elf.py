@@ -30,7 +30,7 @@ def test_it_prints_what_the_program_sends_and_ends_with_it(
     compile_avr: Compile, chip: str, voltages: str, word: str
 ) -> None:
     path = compile_avr(PRINT.replace("END", "DONE();"), chip)
-    command = [sys.executable, "-m", "greywhale_sim.run_elf", path, "--mcu", chip, "--millivolts", voltages]
+    command = [sys.executable, "-m", "greywhale_sim.run_elf", str(path), "--mcu", chip, "--millivolts", voltages]
     result = subprocess.run(command, capture_output=True, text=True, check=False)
     assert (result.returncode, result.stdout, result.stderr) == (0, f"test.cpp:1:first:PASS\n{word}\n", "")
 

@@ -63,7 +63,6 @@ def test_a_good_file_is_read(tmp_path: Path) -> None:
     ("text", "sentence"),
     [
         ("[[wheel]]\nradius = 3\n", "f.toml: wheel[0].radius is 3, but it must be greater than 0 and at most 2."),
-        ("[[wheel]]\nradius = -1\n", "f.toml: wheel[0].radius is -1, but it must be greater than 0 and at most 2."),
         ('[[wheel]]\nradius = "1"\n', 'f.toml: wheel[0].radius is "1", but it should be a valid number.'),
         ("[[wheel]]\nradius = true\n", "f.toml: wheel[0].radius is true, but it should be a valid number."),
         ("[[wheel]]\nradius = nan\n", "f.toml: wheel[0].radius is nan; it must be a finite number."),
@@ -74,7 +73,6 @@ def test_a_good_file_is_read(tmp_path: Path) -> None:
         ("wheel = []", "f.toml: wheel: "),
         ("radius = 3\n", "f.toml: unknown key radius; remove it or check its spelling (and 1 more in this file)."),
         ("[[wheel]]\nraduis = 1\n", "f.toml: unknown key wheel[0].raduis; perhaps radius is meant (and 1 more in this"),
-        (GOOD.replace("whe", "hwe"), "f.toml: unknown key hweel; perhaps wheel is meant (and 1 more in this file)."),
         ("# a log\n\ntime_s,leader_0\n0.0,1.0\n", "f.toml: not valid TOML: this is a log or a motion (CSV)."),
         ("radius = \n", "f.toml: not valid TOML: invalid value (at line 1, column 10)."),
     ],

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -13,13 +14,13 @@ from greywhale.board.flash.readback import BLOCK, compare_image, read_flash
 from tests.board.flash.fake_bootloader import ATMEGA328P, MEGA2560, FakeBootloader, Version1, Version2
 from tests.board.flash.hex_files import hex_text, write_image
 
-KINDS = [(Version2, 115200, MEGA2560), (Version1, 57600, ATMEGA328P)]
-IDS = ["mega", "nano"]
+ON_MEGA, ON_NANO = (
+    Bootloader(Dialect("wiring", 115200), MEGA2560),
+    Bootloader(Dialect("arduino", 57600), ATMEGA328P),
+)
+BOTH = pytest.mark.parametrize(("kind", "found"), [(Version2, ON_MEGA), (Version1, ON_NANO)], ids=["mega", "nano"])
+Kind = Callable[..., FakeBootloader]
 MEMORY = bytes((7 * at + at // 256) % 256 for at in range(1001))
-
-
-def dialect(kind: type[FakeBootloader], baud: int) -> Dialect:
-    return Dialect("wiring" if kind is Version2 else "arduino", baud)
 
 
 BLOCKS = [range(at, min(at + BLOCK, len(MEMORY))) for at in range(0, len(MEMORY), BLOCK)]
@@ -29,20 +30,16 @@ def told(what: str, fraction: float) -> None:
     assert 0.0 <= fraction <= 1.0
 
 
-@pytest.mark.parametrize(("kind", "baud", "signature"), KINDS, ids=IDS)
-def test_every_byte_is_read_and_the_firmware_started_again(
-    kind: type[FakeBootloader], baud: int, signature: bytes
-) -> None:
-    with kind(baud, signature, MEMORY, garble=2) as board:
-        found = Bootloader(dialect(kind, baud), signature)
+@BOTH
+def test_every_byte_is_read_and_the_firmware_started_again(kind: Kind, found: Bootloader) -> None:
+    with kind(found.dialect.baud, found.signature, MEMORY, garble=2) as board:
         assert read_flash(board.port, found, BLOCKS, told) == MEMORY
         assert board.left
 
 
-@pytest.mark.parametrize(("kind", "baud", "signature"), KINDS, ids=IDS)
-def test_the_first_byte_that_differs_is_told(
-    kind: type[FakeBootloader], baud: int, signature: bytes, tmp_path: Path
-) -> None:
+@BOTH
+def test_the_first_byte_that_differs_is_told(kind: Kind, found: Bootloader, tmp_path: Path) -> None:
+    baud, signature = found.dialect.baud, found.signature
     path = write_image(tmp_path / "image.hex", signature)
     memory = bytearray(read_image(path).memory)
     with kind(baud, signature, bytes(memory)) as board:
@@ -50,10 +47,10 @@ def test_the_first_byte_that_differs_is_told(
     memory[0x123] ^= 0x40
     memory[0x200] ^= 0x01
     with kind(baud, signature, bytes(memory)) as board:
-        found, boot_code = compare_image(board.port, path)
-    assert (found.same, found.differing, found.first, found.compared) == (False, 2, 0x123, len(memory))
-    assert found.wanted is not None
-    assert found.found == found.wanted ^ 0x40
+        read, boot_code = compare_image(board.port, path)
+    assert (read.same, read.differing, read.first, read.compared) == (False, 2, 0x123, len(memory))
+    assert read.wanted is not None
+    assert read.found == read.wanted ^ 0x40
     assert boot_code.comes_back is None, "its section is blank"
 
 
@@ -67,4 +64,4 @@ def test_what_an_image_leaves_out_is_not_read(tmp_path: Path) -> None:
 
 def test_a_bootloader_that_answers_wrongly_again_and_again_is_named() -> None:
     with Version2(115200, MEGA2560, MEMORY, garble=99) as board, pytest.raises(UserError, match="at address 0x0"):
-        read_flash(board.port, Bootloader(dialect(Version2, 115200), MEGA2560), BLOCKS, told)
+        read_flash(board.port, ON_MEGA, BLOCKS, told)
