@@ -95,7 +95,7 @@ def _gain(width: int, end: float) -> int:
     return round(width * SET_UNIT / end)
 
 
-@pytest.mark.parametrize("end", [13, 100, 127.9, 128.1, 190, 255.9, 256.1, 400], ids=str)
+@pytest.mark.parametrize("end", [13, 127.9, 128.1, 255.9, 256.1, 400], ids=str)
 @pytest.mark.parametrize("outer", [1.0, 3.0], ids=["alike", "outer is long"])
 def test_short_and_medium_ramps_at_every_size(board: FuzzyOnBoard, end: float, outer: float) -> None:
     width = 3000

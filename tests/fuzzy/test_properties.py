@@ -73,23 +73,6 @@ def test_no_error_no_output_and_no_change_of_sides(cases: st.SearchStrategy[Case
     assert (ours[len(size) :] <= 0).all()
 
 
-@settings(max_examples=100)
-@given(data=st.data())
-def test_monotone_in_e_wherever_the_exact_law_is(
-    cases: st.SearchStrategy[Case], points: Points, data: st.DataObject
-) -> None:
-    """Where the exact law does not fall, the integers do not fall by more than their last bit."""
-    joint, period = data.draw(cases)
-    e, ce = points(joint, period, data.draw(st.integers(0, 2**32 - 1)))
-    law = exact.Law(joint, period)
-    e, change = np.unique(e)[::10], int(ce[0])
-    exactly = [law.infer(Fraction(int(value), 4096), Fraction(change, 4096)).u for value in e]
-    ours = twin.infer(twin.compile_settings(joint, period), e, change).u
-    for before, after, low, high in zip(exactly, exactly[1:], ours, ours[1:], strict=False):
-        if after >= before:
-            assert high >= low - 1
-
-
 @pytest.mark.parametrize("ticks", [1, 2, 20])
 def test_the_change_spans_so_many_periods(ticks: int) -> None:
     """An error that grows evenly: its change is 0 until it has been seen for so long, then that of the whole span."""
@@ -102,32 +85,6 @@ def test_the_change_spans_so_many_periods(ticks: int) -> None:
         assert output.u_fuzzy == law.infer(Fraction(10 * k, 4096), change).u
     ours = twin.Controller(joint, 1).run(10 * np.arange(2 * ticks + 1), 0, 32767)
     assert np.abs(ours.u_fuzzy - np.array([float(one) for one in u]) * Q15).max() <= 1
-
-
-def test_a_partition_of_unity_makes_a_straight_line() -> None:
-    """The sets before tuning, without a change of error: u_fuzzy is x / 0.3 up to 1, and the integers never fall."""
-    e = np.arange(-12000, 12001)
-    u = twin.infer(twin.compile_settings(PLAIN, 20), e, 0).u
-    line = np.clip(e / 4096 * PLAIN.kp / GAIN_UNIT / (PLAIN.pe_b / 16384), -1, 1) * Q15
-    assert np.abs(u - line).max() < 1
-    assert (np.diff(u) >= 0).all()
-
-
-@settings(max_examples=100)
-@given(data=st.data())
-def test_the_exact_law_is_continuous(cases: st.SearchStrategy[Case], data: st.DataObject) -> None:
-    """Across every corner a step of 1e-9 moves u by no more than the steepest slope allows."""
-    joint, _ = data.draw(cases)
-    sets = joint.set_values()
-    tiny = Fraction(1, 10**9)
-    y = data.draw(st.fractions(-1, 1, max_denominator=1000))
-    for corner in [Fraction(0), *list(sets.values())[:4]]:
-        below, above = (exact.infer(exact.clamp(corner + side * tiny, Fraction(1)), y, sets).u for side in (-1, 1))
-        assert abs(above - below) <= 3 * 2 * tiny * 100 / Fraction(99, 10_000)
-    x = data.draw(st.fractions(-1, 1, max_denominator=1000))
-    for corner in [Fraction(0), *list(sets.values())[4:]]:
-        below, above = (exact.infer(x, exact.clamp(corner + side * tiny, Fraction(1)), sets).u for side in (-1, 1))
-        assert abs(above - below) <= 3 * 2 * tiny * 100 / Fraction(99, 10_000)
 
 
 def test_the_exact_law_is_the_weighted_singletons_of_table_6() -> None:
@@ -143,20 +100,8 @@ def test_the_exact_law_is_the_weighted_singletons_of_table_6() -> None:
     assert found.u == Fraction(1, 6)
 
 
-def test_crisp_feet_leave_points_without_a_rule() -> None:
-    """Defined all the same: 0, and reported."""
-    sets = PLAIN.set_values()
-    gap = {**sets, "ze_c": Fraction(1, 10)}
-    between = exact.infer(Fraction(1, 5), Fraction(0), gap, exact.Feet.CRISP)
-    assert between.no_rule
-    assert between.u == 0
-    assert not exact.infer(Fraction(1, 5), Fraction(0), gap).no_rule
-    beyond = exact.infer(Fraction(1), Fraction(0), gap, exact.Feet.CRISP)
-    assert beyond.u == 1
-
-
 @pytest.mark.slow
-@settings(max_examples=250)
+@settings(max_examples=200)
 @given(data=st.data())
 def test_host_and_firmware_refuse_the_same(data: st.DataObject) -> None:
     corner = st.one_of(
@@ -170,24 +115,8 @@ def test_host_and_firmware_refuse_the_same(data: st.DataObject) -> None:
     values.append(data.draw(st.sampled_from([0, 1, 20, 21])))
     joint = JointSettings(*values)
     period = data.draw(st.sampled_from([0, 1, 2, 4, 20, 50, 51, 255]))
-    assert Refusal(_native.fuzzy_refusal(joint.native(), period)) is joint.refusal(period)
-
-
-@pytest.mark.parametrize(
-    ("change", "refusal"),
-    [
-        ({"ne_c": 4915}, Refusal.ORDER),
-        ({"pe_b": 16385}, Refusal.RANGE),
-        ({"zce_c": 163}, Refusal.WIDTH),
-        ({"kp": 64 * GAIN_UNIT + 1}, Refusal.GAIN),
-        ({"ki": 1 << 27}, Refusal.GAIN),
-        ({"ku_mv": 30_001}, Refusal.GAIN),
-        ({"period_ms": 0}, Refusal.PERIOD),
-        ({"period_ms": 51}, Refusal.PERIOD),
-    ],
-)
-def test_reasons(change: dict[str, int], refusal: Refusal) -> None:
-    period = change.pop("period_ms", 20)
-    assert replace(PLAIN, **change).refusal(period) is refusal
-    with pytest.raises(ValueError, match="refused"):
-        replace(PLAIN, **change).controller(period)
+    refusal = Refusal(_native.fuzzy_refusal(joint.native(), period))
+    assert refusal is joint.refusal(period)
+    if refusal is not Refusal.NONE:
+        with pytest.raises(ValueError, match="refused"):
+            joint.controller(period)
