@@ -37,9 +37,7 @@ def test_text_tables_and_files(capsys: Captured, tmp_path: Path) -> None:
     ("arguments", "sentence"),
     [
         (("--budget", "many"), "Invalid value for '--budget': 'many' is not a valid integer."),
-        (("--methods", "gwo,newton"), "there is no method 'newton'; there are gwo-woa-relative, gwo-woa,"),
         (("--functions", ","), "no function was chosen; there are sphere,"),
-        (("--jobs", "0"), "Invalid value for '--workers' / '--jobs'"),
         (("--results", "r.csv", "--out", "r.csv"), "r.csv: this is the results file; write the report elsewhere."),
         (("--out", "r.txt"), "r.txt: reports end in .csv, .png, .svg, .pdf."),
     ],
