@@ -22,39 +22,38 @@ def reframed(arm: ArmParameters, seed: int, flips: tuple[int, ...] = (), zero: t
         if name == "world":
             continue
         frames[name] = pose(random.uniform(-0.1, 0.1, 3), rotation(random.normal(size=4)))
-        inertial = link.find("inertial")
-        assert inertial is not None
+        inertial = part(link, "inertial")
         place(inertial, np.linalg.inv(frames[name]) @ origin(inertial))
     for number, joint in enumerate(robot.findall("joint")):
-        parent, child, axis = joint.find("parent"), joint.find("child"), joint.find("axis")
-        assert parent is not None
-        assert child is not None
-        assert axis is not None
-        old = frames[str(parent.get("link"))], frames[str(child.get("link"))]
-        along = np.array([float(part) for part in str(axis.get("xyz")).split()])
+        parent, child = (str(part(joint, tag).get("link")) for tag in ("parent", "child"))
+        axis, limit = part(joint, "axis"), part(joint, "limit")
+        old = frames[parent], frames[child]
+        along = np.array([float(number) for number in str(axis.get("xyz")).split()])
         # A joint's frame is its child's. So the child's new frame must lie on the axis.
         slid = old[1].copy()
         slid[:3, 3] = along * (along @ old[1][:3, 3])
-        inertial = next(one for one in robot.findall("link") if one.get("name") == child.get("link")).find("inertial")
-        assert inertial is not None
+        inertial = part(next(one for one in robot.findall("link") if one.get("name") == child), "inertial")
         place(inertial, np.linalg.inv(slid) @ old[1] @ origin(inertial))
-        frames[str(child.get("link"))] = slid
+        frames[child] = slid
         turn = pose(np.zeros(3), about(along, zero[number]))
         place(joint, np.linalg.inv(old[0]) @ origin(joint) @ turn @ slid)
         sign = -1.0 if number in flips else 1.0
         axis.set("xyz", text(sign * slid[:3, :3].T @ along))
-        limit = joint.find("limit")
-        assert limit is not None
         ends = sorted(sign * (float(str(limit.get(key))) - zero[number]) for key in ("lower", "upper"))
         limit.set("lower", repr(ends[0]))
         limit.set("upper", repr(ends[1]))
     return xml.tostring(robot, encoding="unicode")
 
 
+def part(owner: xml.Element, tag: str) -> xml.Element:
+    found = owner.find(tag)
+    assert found is not None
+    return found
+
+
 def origin(owner: xml.Element) -> np.ndarray:
-    tag = owner.find("origin")
-    assert tag is not None
-    xyz, (roll, pitch, yaw) = ([float(part) for part in str(tag.get(key)).split()] for key in ("xyz", "rpy"))
+    tag = part(owner, "origin")
+    xyz, (roll, pitch, yaw) = ([float(number) for number in str(tag.get(key)).split()] for key in ("xyz", "rpy"))
     turned = (
         about(np.array([0, 0, 1.0]), yaw) @ about(np.array([0, 1.0, 0]), pitch) @ about(np.array([1.0, 0, 0]), roll)
     )
@@ -62,8 +61,7 @@ def origin(owner: xml.Element) -> np.ndarray:
 
 
 def place(owner: xml.Element, frame: np.ndarray) -> None:
-    tag = owner.find("origin")
-    assert tag is not None
+    tag = part(owner, "origin")
     turn = frame[:3, :3]
     pitch = -np.arcsin(np.clip(turn[2, 0], -1.0, 1.0))
     angles = np.array([np.arctan2(turn[2, 1], turn[2, 2]), pitch, np.arctan2(turn[1, 0], turn[0, 0])])

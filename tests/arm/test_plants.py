@@ -25,7 +25,7 @@ def test_names_are_those_of_the_python_tables() -> None:
     assert len(set(_native.PLANT_COLUMN_NAMES)) == _native.PLANT_COLUMNS
 
 
-@pytest.mark.parametrize("name", ["default", "white_box", "grey_box", "worn"])
+@pytest.mark.parametrize("name", ["white_box", "worn"])
 def test_columns_hold_what_they_are_called(name: str) -> None:
     arm = load_arm(name)
     columns = named(arm)

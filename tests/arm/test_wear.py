@@ -26,9 +26,9 @@ def roll_arm(make_arm: Any, friction: dict[str, float], gear: dict[str, float], 
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("share", [0.0, 0.5])
-def test_load_friction_moves_as_an_independent_integration_says(make_arm: Any, share: float) -> None:
+def test_load_friction_moves_as_an_independent_integration_says(make_arm: Any) -> None:
     """A spring between motor and link, driven to and fro, with an outside load that the gear must pass on."""
+    share = 0.5
     friction = {"coulomb": 0.05, "breakaway": 0.05, "load": share}
     gear = {"half_gap": 0.0, "stiffness": 20.0, "damping": 0.05, "drag": 0.0}
     parameters = roll_arm(make_arm, friction, gear)

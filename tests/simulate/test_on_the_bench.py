@@ -68,15 +68,8 @@ WEAR: dict[str, dict[str, float]] = {
     "play": {"pot_play": 0.01},
     "lag": {"pot_lag": 0.002},
     "supply": {"supply_resistance": 0.6},
-    "all": {
-        "load_friction": 0.35,
-        "creep_velocity": 0.02,
-        "pot_play": 0.01,
-        "pot_lag": 0.002,
-        "supply_resistance": 0.3,
-    },
 }
-WEAR |= {"rigid, load friction": RIGID | WEAR["load friction"], "rigid, all": RIGID | WEAR["all"]}
+WEAR["rigid, all"] = RIGID | {key: value for one in WEAR.values() for key, value in one.items()}
 
 
 @pytest.fixture(scope="module")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import json
 import tomllib
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -60,20 +61,38 @@ stall_current_a = 1.2
 """
 
 
-def ask(capsys: pytest.CaptureFixture[str], *arguments: str) -> tuple[int, dict[str, Any]]:
-    code = run(["arm", "new", "--json", *arguments])
-    return code, json.loads(capsys.readouterr().out)
+Ask = Callable[[str], tuple[int, dict[str, Any], Path]]
+Say = Callable[..., str]
 
 
-def written(folder: Path, text: str) -> str:
-    path = folder / "answers.toml"
-    path.write_text(text)
-    return str(path)
+@pytest.fixture
+def ask(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Ask:
+    """Has the verb read answers: its exit code, its facts and where the arm is."""
+    answers, out = tmp_path / "answers.toml", tmp_path / "arm.toml"
+
+    def told(text: str) -> tuple[int, dict[str, Any], Path]:
+        answers.write_text(text)
+        out.unlink(missing_ok=True)
+        code = run(["arm", "new", "--json", "--answers", str(answers), "--out", str(out)])
+        return code, json.loads(capsys.readouterr().out), out
+
+    return told
 
 
-def test_answers_of_a_file_become_an_arm_that_moves(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    out = tmp_path / "arm.toml"
-    code, facts = ask(capsys, "--answers", written(tmp_path, ANSWERS), "--out", str(out))
+@pytest.fixture
+def say(tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> Say:
+    """Answers the verb with lines: what it said."""
+
+    def said(*lines: str, code: int = 0) -> str:
+        monkeypatch.setattr("sys.stdin", io.StringIO("".join(f"{line}\n" for line in lines)))
+        assert run(["arm", "new", "--out", str(tmp_path / "arm.toml")]) == code
+        return capsys.readouterr().err
+
+    return said
+
+
+def test_answers_of_a_file_become_an_arm_that_moves(ask: Ask) -> None:
+    code, facts, out = ask(ANSWERS)
     assert code == 0
     arm = load_arm(out)
     assert arm.link[0].mass == pytest.approx(0.2)
@@ -89,17 +108,10 @@ def test_answers_of_a_file_become_an_arm_that_moves(tmp_path: Path, capsys: pyte
         angles = body.step([6.0, 0.0, 0.0, 0.0], 0.001)
     assert 1.0 < angles[0] <= np.pi / 2
     assert np.all(np.isfinite(angles))
-
-
-def test_gravity_is_that_of_the_arm_stretched_out(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    out = tmp_path / "arm.toml"
-    _, facts = ask(capsys, "--answers", written(tmp_path, ANSWERS), "--out", str(out))
-    arm = load_arm(out)
     levers = np.cumsum([0.0, arm.link[1].length, arm.link[2].length])
-    reach = [lever + link.centre for lever, link in zip(levers, arm.link[1:], strict=True)]
-    torque = sum(9.81 * link.mass * lever for link, lever in zip(arm.link[1:], reach, strict=True))
+    torque = sum(9.81 * link.mass * (lever + link.centre) for link, lever in zip(arm.link[1:], levers, strict=True))
     torque += 9.81 * 0.05 * (levers[2] + arm.link[3].length)
-    assert facts["joints"][1]["gravity_nm"] == pytest.approx(torque, abs=1e-6)
+    assert facts["joints"][1]["gravity_nm"] == pytest.approx(torque, abs=1e-6), "that of the arm stretched out"
     assert facts["joints"][0]["gravity_nm"] == 0.0
 
 
@@ -118,44 +130,29 @@ def test_gravity_is_that_of_the_arm_stretched_out(tmp_path: Path, capsys: pytest
         (('section = "bar"', 'section = "I"'), "link[1].section is 'I': say one of: tube, bar"),
     ],
 )
-def test_a_wrong_answer_of_a_file_is_named_by_its_key(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], change: tuple[str, str], says: str
-) -> None:
+def test_a_wrong_answer_of_a_file_is_named_by_its_key(ask: Ask, change: tuple[str, str], says: str) -> None:
     assert change[0] in ANSWERS
-    out = tmp_path / "arm.toml"
-    code, facts = ask(capsys, "--answers", written(tmp_path, ANSWERS.replace(*change)), "--out", str(out))
+    code, facts, out = ask(ANSWERS.replace(*change))
     assert code == 2
     assert says in facts["error"]
     assert not out.exists()
 
 
-def test_a_motor_that_cannot_lift_the_arm_is_warned_of(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    weak = ANSWERS.replace('"18 kg cm"', "0.3").replace("no_load_rpm = 76", "no_load_rpm = 60")
-    _, facts = ask(capsys, "--answers", written(tmp_path, weak), "--out", str(tmp_path / "arm.toml"))
+def test_a_motor_that_cannot_lift_the_arm_is_warned_of(ask: Ask) -> None:
+    _, facts, _ = ask(ANSWERS.replace('"18 kg cm"', "0.3").replace("no_load_rpm = 76", "no_load_rpm = 60"))
     (lifts, *_) = facts["warnings"]
     assert lifts.startswith("joint 1 (shoulder pitch) cannot lift the arm: stretched out it needs ")
 
 
-def test_an_arm_that_is_heavy_for_its_motors_gets_advice_for_the_board(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    heavy = ANSWERS.replace("tip_g = 50", "tip_g = 200")
-    _, facts = ask(capsys, "--answers", written(tmp_path, heavy), "--out", str(tmp_path / "arm.toml"))
+def test_an_arm_that_is_heavy_for_its_motors_gets_advice_for_the_board(ask: Ask) -> None:
+    _, facts, _ = ask(ANSWERS.replace("tip_g = 50", "tip_g = 200"))
     assert facts["joints"][1]["hold_v"] > 3.2
     assert "params set stall_volts=" in facts["before_it_moves"]
-    _, light = ask(capsys, "--answers", written(tmp_path, ANSWERS.replace("tip_g = 50", "tip_g = 0")), "--out",
-                   str(tmp_path / "light.toml"))  # fmt: skip
-    assert light["joints"][1]["hold_v"] < facts["joints"][1]["hold_v"]
 
 
-def test_a_person_is_asked_again_with_the_reason(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_person_is_asked_again_with_the_reason(tmp_path: Path, say: Say) -> None:
     out = tmp_path / "arm.toml"
-    lines = ["my own", "much", "0,5", "70", "6 V", *[""] * 100]
-    monkeypatch.setattr("sys.stdin", io.StringIO("\n".join(lines) + "\n"))
-    assert run(["arm", "new", "--out", str(out)]) == 0
-    said = capsys.readouterr().err
+    said = say("my own", "much", "0,5", "70", "6 V", *[""] * 100)
     assert "Not 'much': that is no number." in said
     assert "write a point, not a comma" in said
     assert "Not '70': it must be 1 to 60 V." in said
@@ -163,10 +160,6 @@ def test_a_person_is_asked_again_with_the_reason(
     arm = tomllib.loads(out.read_text())
     assert arm["name"] == "my own"
     assert arm["drive"]["supply"] == 6.0
-
-
-def say(monkeypatch: pytest.MonkeyPatch, *lines: str) -> None:
-    monkeypatch.setattr("sys.stdin", io.StringIO("".join(f"{line}\n" for line in lines)))
 
 
 @pytest.mark.parametrize(
@@ -177,17 +170,14 @@ def say(monkeypatch: pytest.MonkeyPatch, *lines: str) -> None:
     ],
 )
 def test_without_a_yes_only_the_answers_are_kept_and_they_can_be_used(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, lines: list[str], says: str
+    tmp_path: Path, say: Say, lines: list[str], says: str
 ) -> None:
     out, again, kept = (tmp_path / name for name in ("arm.toml", "again.toml", "arm.answers.toml"))
-    say(monkeypatch, *lines)
-    assert run(["arm", "new", "--out", str(out)]) == 1
-    said = capsys.readouterr().err
+    said = say(*lines, code=1)
     assert says in said
     assert f"`greywhale arm new --answers {kept}`" in said
     assert list(tmp_path.iterdir()) == [kept]
-    say(monkeypatch, "desk", "9", "90", *[""] * 100)
-    assert run(["arm", "new", "--out", str(out)]) == 0
+    say("desk", "9", "90", *[""] * 100)
     assert run(["arm", "new", "--answers", str(kept), "--out", str(again)]) == 0
     assert load_arm(again) == load_arm(out)
 
@@ -217,17 +207,12 @@ def test_ctrl_c_keeps_the_answers_beside_earlier_ones(
     assert capsys.readouterr().err.endswith("interrupted.\n"), "who said nothing loses nothing"
 
 
-def test_back_asks_the_question_before_again(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    out = tmp_path / "arm.toml"
-    say(monkeypatch, "back", "desk", "9", "14 cm", "bar", "back", "back", "15 cm", *[""] * 44, "back", "250", "")
-    assert run(["arm", "new", "--out", str(out)]) == 0
-    said = capsys.readouterr().err
+def test_back_asks_the_question_before_again(tmp_path: Path, say: Say) -> None:
+    said = say("back", "desk", "9", "14 cm", "bar", "back", "back", "15 cm", *[""] * 44, "back", "250", "")
     assert said.count("Its length, mm [80]") == 2
     assert said.count("Link 0, the turret") == 3, "the heading tells which link it is, each time one goes back"
     assert said.count("Write ") == 2, "from the summary too"
-    arm = load_arm(out)
+    arm = load_arm(tmp_path / "arm.toml")
     assert arm.link[0].length == 0.15
     assert arm.follower_pots.joint[0].track == pytest.approx(np.radians(250.0))
 
@@ -246,19 +231,16 @@ def test_units_as_people_write_them(text: str, unit: Any, value: float) -> None:
     assert read_number(text, unit) == pytest.approx(value, rel=1e-4)
 
 
-def test_an_arm_with_two_joints_is_asked_for_their_motors_alone(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_an_arm_with_two_joints_is_asked_for_their_motors_alone(ask: Ask) -> None:
     text = ANSWERS.split("[[joint]]\nstall")[0]
     for given in ('"0,1"', "[0, 1]"):
-        out = tmp_path / f"arm{len(given)}.toml"
-        code, facts = ask(capsys, "--answers", written(tmp_path, f"joints = {given}\n{text}"), "--out", str(out))
+        code, facts, out = ask(f"joints = {given}\n{text}")
         assert code == 0, facts
         arm = load_arm(out)
         assert arm.joints_in_use == (0, 1)
         assert [one["joint"] for one in facts["joints"]] == [0, 1]
         assert not any(name.startswith(("joint[2]", "joint[3]")) for name in facts["left_out"])
         assert arm.link[3].mass > 0.0
-    code, facts = ask(capsys, "--answers", written(tmp_path, 'joints = "0,4"'), "--out", str(tmp_path / "no.toml"))
+    code, facts, _ = ask('joints = "0,4"')
     assert code == 2
     assert "joints is '0,4': give one or more of 0 to 3, each once" in facts["error"]
