@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-from greywhale.arm import ArmParameters
 from greywhale.base.errors import BAD_USAGE, FAILED, UserError
 from greywhale.files import parameter_file
 from greywhale.files.arm import default_arm, load_arm
@@ -54,13 +53,9 @@ def test_a_validated_model_has_no_doubts_and_is_its_arm(tmp_path: Path) -> None:
 
 
 def test_plants_are_drawn_from_the_covariance_and_follow_from_the_seed(tmp_path: Path) -> None:
-    path = write_model(tmp_path / "model.toml", deviation=0.05)
-    model = load_model(path, samples=400, seed=3)
-    np.testing.assert_array_equal(model.plants, sampled_plants(load_arm(path), 400, 3))
-    torque = np.log(model.plants[1:, 11])  # joint0.torque_per_volt = 1 / alpha
-    assert np.std(torque) == pytest.approx(0.05, rel=0.15)
-    np.testing.assert_array_equal(load_model(path, samples=5, seed=3).plants, model.plants[:5])
-    assert not np.array_equal(load_model(path, samples=5, seed=4).plants, model.plants[:5])
+    path = write_model(tmp_path / "model.toml")
+    model = load_model(path, samples=5, seed=3)
+    np.testing.assert_array_equal(model.plants, sampled_plants(load_arm(path), 5, 3))
 
 
 def test_the_table_is_that_of_the_logs(tmp_path: Path) -> None:
@@ -87,17 +82,16 @@ def test_a_backup_of_the_board_comes_before_the_logs(tmp_path: Path) -> None:
 
 
 def test_a_model_as_good_as_a_good_arm_file_is_taken(tmp_path: Path) -> None:
-    """Of an arm that was known already, identified once more or exact, noise decides which model is nearer."""
+    """Of an arm that was known already, identified once more or exact, noise decides which model is nearer. A model of
+    before, which does not state chance, must not be worse at all.
+    """
     logs = [log_facts(), log_facts("validation", -0.09), log_facts("validation, changed controller", 0.0)]
     assert load_model(write_model(tmp_path / "model.toml", log=logs)).doubts == ()
     worse = [log_facts(), log_facts("validation", -0.09, chance_rad2=0.8e-3)]
     assert "worse than the arm file it began with" in refused(write_model(tmp_path / "worse.toml", log=worse))
-
-
-def test_a_model_of_before_that_does_not_state_chance_must_not_be_worse(tmp_path: Path) -> None:
-    logs = [log_facts(), log_facts("validation", -0.01)]
-    del logs[1]["chance_rad2"]
-    assert "worse than the arm file" in refused(write_model(tmp_path / "model.toml", log=logs))
+    old = [log_facts(), log_facts("validation", -0.01)]
+    del old[1]["chance_rad2"]
+    assert "worse than the arm file" in refused(write_model(tmp_path / "old.toml", log=old))
 
 
 def test_warnings_of_the_identification_go_along(tmp_path: Path) -> None:
@@ -153,7 +147,6 @@ def test_a_shipped_arm_can_be_forced_by_its_name_at_its_own_supply() -> None:
     ("joint", "guilty", "motion"),
     [
         ("2 (wrist pitch)", "damping", "move at a steady speed"),
-        ("0 (base yaw)", "inertia", "reverse the motion quickly"),
         ("1 (shoulder pitch)", "coulomb", "move slowly to and fro"),
     ],
 )
@@ -180,16 +173,10 @@ def test_a_number_that_no_motion_feels_may_be_uncertain(tmp_path: Path) -> None:
     assert not load_model(write_model(tmp_path / "model.toml", facts=facts)).doubts
 
 
-def other_arm(**link: float) -> ArmParameters:
-    data = default_arm().model_dump()
-    links = [one | link if index == 1 else one for index, one in enumerate(data["link"])]
-    return ArmParameters.model_validate(data | {"name": "another", "link": links}, strict=False)
-
-
 def test_a_model_of_another_arm_is_found(tmp_path: Path) -> None:
     path, arm = write_model(tmp_path / "model.toml"), tmp_path / "arm.toml"
-    arm.write_text(to_toml(other_arm(mass=0.5), {}), encoding="utf-8")
-    assert f"{arm}: link[1].mass is {default_arm().link[1].mass} here and 0.5 there" in refused(path, arm=arm)
+    arm.write_text(to_toml(default_arm(), {}).replace("mass = 0.13\n", "mass = 0.5\n"), encoding="utf-8")
+    assert f"{arm}: link[1].mass is 0.13 here and 0.5 there" in refused(path, arm=arm)
 
 
 @pytest.mark.parametrize(
@@ -197,7 +184,6 @@ def test_a_model_of_another_arm_is_found(tmp_path: Path) -> None:
     [
         ({"filter_shift": 3}, "filter_shift was 1 and is 3; record"),
         ({"leader2__zero": 8000}, "leader2.zero was 8184 count14 and is 8000 count14; record"),
-        ({"joint3__motor_sign": -1}, "joint3.motor_sign was 1 and is -1; record"),
     ],
 )
 def test_a_board_that_is_not_that_of_the_logs_is_found(tmp_path: Path, changes: dict[str, int], words: str) -> None:

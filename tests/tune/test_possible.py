@@ -39,15 +39,9 @@ def test_the_floor_lies_below_any_controller_that_there_is(
     assert (scale.floor > 0.0).all()
     assert (scale.floor < found.error[0]).all()
     np.testing.assert_allclose(scale.floor + scale.room, found.error[0])
-
-
-def test_a_stronger_arm_has_a_lower_floor_on_large_moves(scale: ErrorScale) -> None:
-    assert (scale.floor[1, 0] < 0.95 * scale.floor[0, 0]).all()
-
-
-def test_large_moves_can_hardly_be_helped_and_slow_ones_nearly_all(scale: ErrorScale) -> None:
-    assert (scale.floor[:, 0] > 2.0 * scale.room[:, 0]).all()
-    assert (scale.floor[:, 1:] < 0.5 * scale.room[:, 1:]).all()
+    assert (scale.floor[1, 0] < 0.95 * scale.floor[0, 0]).all(), "a stronger arm has a lower one on large moves"
+    assert (scale.floor[:, 0] > 2.0 * scale.room[:, 0]).all(), "large moves can hardly be helped"
+    assert (scale.floor[:, 1:] < 0.5 * scale.room[:, 1:]).all(), "slow ones nearly all"
 
 
 def test_a_joint_at_its_floor_has_room_all_the_same(

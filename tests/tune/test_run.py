@@ -151,13 +151,10 @@ def test_an_interrupt_before_anything_was_tried_goes_on_up(model: Model, monkeyp
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("strategy", "method"), [("mf", "default"), ("sf", "de")])
-def test_strategies_keep_to_their_numbers_with_any_optimiser(
-    sure: Model, unjudged: None, strategy: str, method: str
-) -> None:
-    outcome = run(sure, strategy=strategy, method=method, budget=25)
-    kept = slice(8, 12) if strategy == "mf" else slice(0, 8)
-    np.testing.assert_array_equal(outcome.after[:, kept], outcome.before[:, kept])
+def test_a_strategy_keeps_to_its_numbers_with_any_optimiser(sure: Model, unjudged: None) -> None:
+    """Also where less voltage and less integral are tried, as no part of this strategy."""
+    outcome = run(sure, strategy="mf", method="de", budget=25)
+    np.testing.assert_array_equal(outcome.after[:, 8:12], outcome.before[:, 8:12])
     assert sum(outcome.cost_after) < sum(outcome.cost_before)
     assert 24 <= outcome.evaluations <= 25, "two turns share them"
     assert set(METHODS) == {"default", "paper", *OPTIMISERS}
@@ -210,12 +207,12 @@ def test_the_benchs_own_arithmetic_has_the_last_word(
 
 
 def test_where_the_arm_itself_will_judge_unrest_on_the_model_counts_less(
-    model: Model, monkeypatch: pytest.MonkeyPatch
+    sure: Model, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(default, "penalty", lambda unrest, quiet_v: np.ones((1, 4)))
     monkeypatch.setattr(Standard, "falls_short", lambda self, unrest: np.ones((1, 4), dtype=bool))
-    task = TuningRequest(model, "both", "default", 1, 0, 1, model.controllers, {}, show_no_progress, floors=False)
-    rows = model.controllers[None]
+    task = TuningRequest(sure, "both", "default", 1, 0, 1, sure.controllers, {}, show_no_progress, floors=False)
+    rows = sure.controllers[None]
     usual = DefaultMethod(task).judge_costs(rows)
     on_trial = DefaultMethod(replace(task, on_trial=True)).judge_costs(rows)
     assert usual - on_trial == pytest.approx(default.UNFIT - default.ON_TRIAL)
@@ -236,7 +233,6 @@ def test_silent_potentiometers_get_the_noise_of_ordinary_ones(model: Model) -> N
         ({"strategy": "all"}, "there is no strategy 'all'"),
         ({"method": "magic"}, "'magic'; there are default, paper, gwo"),
         ({"budget": 0}, "budget is 0, but it must be at least 1"),
-        ({"seed": -1}, "seed is -1"),
         ({"threads": -1}, "threads is -1"),
         ({"bounds": {"Ku": (5.0, 3.0)}}, "give the lower one first"),
         ({"method": "paper", "bounds": {"Ku": (3.0, 5.0)}}, "bounds of its own"),

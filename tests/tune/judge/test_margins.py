@@ -127,13 +127,6 @@ def test_ripple_costs_something_and_what_is_beyond_the_limit_much(margins: Margi
     assert (beyond > 1.0).all()
 
 
-def test_a_change_of_error_over_more_periods_is_quieter(margins: Margins) -> None:
-    longer = BEFORE.copy()
-    longer[:, 12] = 8
-    short, long = margins.unrest(np.stack([BEFORE, longer]))["at rest"].ripple[:, 0]
-    assert (long < 0.5 * short).all()
-
-
 def test_a_search_stops_short_of_the_border() -> None:
     """Whatever the check takes for a limit cycle costs a search something, and more scenarios besides."""
     searching = Margins(ARM, ParameterTable.defaults(), PLANTS, searching=True)

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import replace
-from types import SimpleNamespace
-from typing import Any, cast
+from typing import Any
 
 import pytest
 
@@ -112,20 +111,14 @@ def test_table_12_shows_a_joint_that_got_worse_and_no_floor_where_none_is_known(
 
 
 @pytest.mark.parametrize(("strategy", "rows"), [("sf", 4), ("both", 12), ("mf", 8)])
-def test_a_tuning_fills_the_table_of_its_strategy_and_one_for_every_motion(strategy: str, rows: int) -> None:
-    def held_out(name: str) -> SimpleNamespace:
-        return SimpleNamespace(name=name, before=evaluation(BEFORE), after=evaluation(AFTER), multiples=(1.5,) * 5)
-
-    outcome = SimpleNamespace(
-        model=SimpleNamespace(arm=SimpleNamespace(joints_in_use=(0, 1, 2, 3))),
-        strategy=strategy,
-        before=controllers("before_tuning"),
-        after=controllers("table_9"),
-        held_out=tuple(held_out(name) for name in ("steps", "multi-steps", "human-like reaches")),
-    )
-    parameters, steps, multi_steps, human = tables.tables_of(cast(TuningResult, outcome), paper=True)
+def test_a_tuning_fills_the_table_of_its_strategy_and_one_for_every_motion(
+    outcome: TuningResult, strategy: str, rows: int
+) -> None:
+    first, names = outcome.held_out[0], ("steps", "multi-steps", "human-like reaches")
+    judged = replace(outcome, strategy=strategy, held_out=tuple(replace(first, name=name) for name in names))
+    parameters, steps, multi_steps, human = tables.tables_of(judged, paper=True)
     assert len(parameters.as_dict()["rows"]) == rows
     assert row(steps, "All joints", "Mean")["paper after"] == 0.0405
     assert row(multi_steps, "All joints", "Mean")["paper after"] == 0.4360
     assert "paper after" not in human.as_dict()["columns"]
-    assert row(human, "All joints", "Mean")["x floor"] == 1.5
+    assert row(human, "All joints", "Mean")["x floor"] == first.multiples[4]

@@ -55,12 +55,6 @@ def test_doing_nothing_costs_more_than_anything_sensible(objective: Objective) -
     assert (nothing > 2.0 * before).all()
 
 
-def test_what_was_before_counts_as_one_in_every_class(objective: Objective) -> None:
-    found = follow(objective.drills, PLANTS, BEFORE[None])
-    shares = (found.error - objective.scale.floor) / objective.scale.room
-    np.testing.assert_allclose(shares, 1.0)
-
-
 def test_the_effort_is_a_small_part_of_the_cost(objective: Objective) -> None:
     found = follow(objective.drills, PLANTS, BEFORE[None])
     all_of_it = relative_costs(found, objective.scale, 15.0)
@@ -129,17 +123,12 @@ def test_every_controller_meets_every_plant() -> None:
 
 def test_moves_go_to_both_sides_in_several_sizes() -> None:
     motion = moves(np.full(4, -2.0), np.full(4, 2.0))
-    for joint in range(4):
-        angles = motion.angles[:, joint]
-        places = angles[np.flatnonzero(np.abs(np.diff(angles, prepend=np.inf)) > 0) - 1]
-        assert angles.max() == pytest.approx(1.0)
-        assert angles.min() == pytest.approx(-1.0)
-        assert len(places) > 10
-    sizes = np.abs(np.diff(LEVELS))
-    assert sizes.min() <= 0.1 + 1e-9
-    assert sizes.max() >= 1.0
-    assert sum(np.diff(LEVELS) > 0) >= 3
-    assert sum(np.diff(LEVELS) < 0) >= 3
+    assert motion.angles.max(axis=0) == pytest.approx(np.ones(4))
+    assert motion.angles.min(axis=0) == pytest.approx(-np.ones(4))
+    for steps in (-np.diff(LEVELS), np.diff(LEVELS)):
+        assert sum(steps > 0) >= 3
+        assert steps[steps > 0].min() <= 0.1 + 1e-9
+        assert steps.max() >= 1.0
     assert len(np.unique(motion.angles[::40].round(3), axis=1)[0]) == 4, "each joint goes its own way"
 
 
@@ -194,10 +183,7 @@ def test_slow_following_is_small_and_slow_and_lets_each_joint_rest_in_turn() -> 
         [[np.abs(speed[400 * k + 100 : 400 * k + 300, j]).max() < 1e-9 for j in range(4)] for k in range(4)]
     )
     np.testing.assert_array_equal(resting, np.eye(4, dtype=bool))
-
-
-def test_slow_following_keeps_within_a_narrow_range() -> None:
-    motion = slow_following(np.full(4, 0.3), np.full(4, 0.5))
-    assert motion.angles.min() >= 0.3
-    assert motion.angles.max() <= 0.5
-    assert (np.ptp(motion.angles, axis=0) > 0.099).all()
+    narrow = slow_following(np.full(4, 0.3), np.full(4, 0.5)).angles
+    assert narrow.min() >= 0.3
+    assert narrow.max() <= 0.5
+    assert (np.ptp(narrow, axis=0) > 0.099).all()
