@@ -7,7 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from greywhale.adapt.decide import ENOUGH, TRIAL_MOST, Adaptation, Outcome
+from greywhale.adapt import decide
+from greywhale.adapt.decide import ENOUGH, Adaptation, Outcome
 from greywhale.adapt.foresee import LEAD, foresee, judged_of
 from greywhale.adapt.gain import Scale
 from greywhale.adapt.propose import Proposal, Task, work_on
@@ -45,6 +46,11 @@ def task_after_work(adaptation: Adaptation, work: Work) -> Task:
     return task
 
 
+def propose(adaptation: Adaptation, work: Work, factor: float, predicted: float = 0.5, spread: float = 0.0) -> None:
+    """Have a set with so many times the stiffness found for what was seen."""
+    adaptation.answer(proposal_of(task_after_work(adaptation, work), stiffer(factor), predicted, spread))
+
+
 def test_a_search_begins_once_enough_was_seen_and_only_one_at_a_time(adaptation: Adaptation, work: Work) -> None:
     work_for(adaptation, work, 2)
     assert adaptation.task() is None
@@ -65,8 +71,7 @@ def test_who_does_not_work_is_not_searched_for(adaptation: Adaptation, work: Wor
 
 
 def test_a_better_set_is_tried_and_kept(adaptation: Adaptation, work: Work) -> None:
-    task = task_after_work(adaptation, work)
-    adaptation.answer(proposal_of(task, stiffer(1.6)))
+    propose(adaptation, work, 1.6)
     wish = adaptation.wish
     assert wish is not None
     assert not wish.urgent
@@ -84,8 +89,7 @@ def test_a_better_set_is_tried_and_kept(adaptation: Adaptation, work: Work) -> N
 
 def test_a_worse_set_goes_back_within_seconds(adaptation: Adaptation, work: Work) -> None:
     """Whatever a model promises."""
-    task = task_after_work(adaptation, work)
-    adaptation.answer(proposal_of(task, stiffer(0.4)))
+    propose(adaptation, work, 0.4)
     work_for(adaptation, work, 1)
     assert adaptation.running != TABLE
     for stretch in work.piece(adaptation.running):
@@ -100,23 +104,23 @@ def test_a_worse_set_goes_back_within_seconds(adaptation: Adaptation, work: Work
     assert adaptation.wish.table == adaptation.kept == TABLE
 
 
-def test_a_set_that_is_the_same_goes_back_untold(adaptation: Adaptation, work: Work) -> None:
-    task = task_after_work(adaptation, work)
-    adaptation.answer(proposal_of(task, stiffer(1.001)))
+def test_a_set_that_is_the_same_goes_back_untold(
+    adaptation: Adaptation, work: Work, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(decide, "TRIAL_MOST", 28)
+    propose(adaptation, work, 1.001)
     work_for(adaptation, work, 1)
-    work_for(adaptation, work, TRIAL_MOST // 7 + 2)
+    work_for(adaptation, work, 6)
     (tried,) = adaptation.trials
     assert tried.outcome is Outcome.UNTOLD
     assert adaptation.running == TABLE
 
 
 def test_after_a_wrong_promise_more_must_be_promised(adaptation: Adaptation, work: Work) -> None:
-    task = task_after_work(adaptation, work)
-    adaptation.answer(proposal_of(task, stiffer(0.4), 0.7))
+    propose(adaptation, work, 0.4, 0.7)
     work_for(adaptation, work, 3)
     assert adaptation.running == TABLE
-    task = task_after_work(adaptation, work)
-    adaptation.answer(proposal_of(task, stiffer(3.0), 0.7))
+    propose(adaptation, work, 3.0, 0.7)
     assert adaptation.wish is None
     assert "uncertainty" in adaptation.doubt
 
@@ -124,8 +128,7 @@ def test_after_a_wrong_promise_more_must_be_promised(adaptation: Adaptation, wor
 def test_a_load_taken_up_with_the_set_from_the_start_is_no_fault_of_the_next(
     adaptation: Adaptation, work: Work
 ) -> None:
-    task = task_after_work(adaptation, work)
-    adaptation.answer(proposal_of(task, stiffer(1.6)))
+    propose(adaptation, work, 1.6)
     work.arm = default_arm().model_copy(update={"tip": Tip(mass=0.2)})
     work_for(adaptation, work, 1)
     for stretch in work.piece(adaptation.running)[: LEAD + 1]:
@@ -135,12 +138,11 @@ def test_a_load_taken_up_with_the_set_from_the_start_is_no_fault_of_the_next(
 
 
 def test_a_load_taken_up_is_no_fault_of_the_set_that_was_kept(adaptation: Adaptation, work: Work) -> None:
-    task = task_after_work(adaptation, work)
-    adaptation.answer(proposal_of(task, stiffer(1.2)))
+    propose(adaptation, work, 1.2)
     work_for(adaptation, work, 6)
     assert [one.outcome for one in adaptation.trials] == [Outcome.KEPT]
     work.arm = default_arm().model_copy(update={"tip": Tip(mass=0.3)})
-    for _ in range(4):
+    for _ in range(3):
         for stretch in work.piece(adaptation.running):
             adaptation.take(stretch)
             asked = adaptation.task()
@@ -152,8 +154,7 @@ def test_a_load_taken_up_is_no_fault_of_the_set_that_was_kept(adaptation: Adapta
 
 def test_a_fit_that_explains_nothing_excuses_no_set(adaptation: Adaptation, work: Work) -> None:
     """Such as one to stretches before and after a load was taken up."""
-    task = task_after_work(adaptation, work)
-    adaptation.answer(proposal_of(task, stiffer(1.01)))
+    propose(adaptation, work, 1.01)
     work_for(adaptation, work, 2)
     assert adaptation.on_trial
     known = adaptation.live
@@ -170,14 +171,15 @@ def test_a_fit_that_explains_nothing_excuses_no_set(adaptation: Adaptation, work
 def test_what_is_not_better_by_more_than_its_uncertainty_is_not_tried(
     adaptation: Adaptation, work: Work, predicted: float, spread: float
 ) -> None:
-    task = task_after_work(adaptation, work)
-    adaptation.answer(proposal_of(task, stiffer(3.0), predicted, spread))
+    propose(adaptation, work, 3.0, predicted, spread)
     assert adaptation.wish is None
     assert "uncertainty" in adaptation.doubt
 
 
 def test_a_joint_that_hunts_ends_a_trial_at_once(adaptation: Adaptation, work: Work) -> None:
     task = task_after_work(adaptation, work)
+    adaptation.hunted(1)
+    assert (adaptation.wish, adaptation.trials) == (None, []), "with the set from the start that changes nothing"
     adaptation.answer(proposal_of(task, stiffer(3.0)))
     work_for(adaptation, work, 1)
     adaptation.hunted(2)
@@ -188,8 +190,7 @@ def test_a_joint_that_hunts_ends_a_trial_at_once(adaptation: Adaptation, work: W
 
 
 def test_what_was_found_for_a_set_that_was_given_up_meanwhile_is_not_tried(adaptation: Adaptation, work: Work) -> None:
-    task = task_after_work(adaptation, work)
-    adaptation.answer(proposal_of(task, stiffer(1.6)))
+    propose(adaptation, work, 1.6)
     work_for(adaptation, work, 5)
     task = task_after_work(adaptation, work)
     adaptation.hunted(2)
@@ -201,16 +202,8 @@ def test_what_was_found_for_a_set_that_was_given_up_meanwhile_is_not_tried(adapt
     assert [one.outcome for one in adaptation.trials] == [Outcome.RESTLESS]
 
 
-def test_hunting_with_the_set_from_the_start_changes_nothing(adaptation: Adaptation, work: Work) -> None:
-    task_after_work(adaptation, work)
-    adaptation.hunted(1)
-    assert adaptation.wish is None
-    assert adaptation.trials == []
-
-
 def test_a_kept_set_that_follows_worse_later_gives_way_to_the_start(adaptation: Adaptation, work: Work) -> None:
-    task = task_after_work(adaptation, work)
-    adaptation.answer(proposal_of(task, stiffer(1.6)))
+    propose(adaptation, work, 1.6)
     work_for(adaptation, work, 5)
     assert [one.outcome for one in adaptation.trials] == [Outcome.KEPT]
     # As if the arm had become one on which this very set is bad.

@@ -33,14 +33,18 @@ def missed(live: LiveModel, stretches: list[Stretch]) -> float:
     return float(abs(found.sum() / np.sum([one.error for one in judged_of(stretches)]) - 1.0))
 
 
-def test_friction_that_grew_is_found() -> None:
-    stretches = half_minute(grown_friction(default_arm(), 1.4))
-    refitted = LIVE.refit(stretches, TABLE, 1)
+@pytest.fixture(scope="module")
+def grown() -> list[Stretch]:
+    return half_minute(grown_friction(default_arm(), 1.4))
+
+
+def test_friction_that_grew_is_found(grown: list[Stretch]) -> None:
+    refitted = LIVE.refit(grown, TABLE, 1)
     friction = [ratio for name, ratio in refitted.changes().items() if name.endswith("coulomb")]
     assert friction == pytest.approx([1.4] * 4, rel=0.08)
     assert len(refitted.plants) == PLANTS
-    assert missed(LIVE, stretches) > 0.15
-    assert missed(refitted, stretches) < 0.1
+    assert missed(LIVE, grown) > 0.15
+    assert missed(refitted, grown) < 0.1
 
 
 def test_a_load_that_was_taken_up_is_weighed() -> None:
@@ -57,9 +61,8 @@ def test_an_unchanged_arm_stays_as_it_was() -> None:
     assert friction == pytest.approx([1.0] * 4, rel=0.05)
 
 
-def test_a_joint_that_rests_keeps_its_numbers() -> None:
-    stretches = half_minute(grown_friction(default_arm(), 1.4))
-    still = [replace(one, follower=one.follower * [1, 1, 1, 0], leader=one.leader * [1, 1, 1, 0]) for one in stretches]
+def test_a_joint_that_rests_keeps_its_numbers(grown: list[Stretch]) -> None:
+    still = [replace(one, follower=one.follower * [1, 1, 1, 0], leader=one.leader * [1, 1, 1, 0]) for one in grown]
     changes = LIVE.refit(still, TABLE, 1).changes()
     assert changes["joint3.coulomb"] == pytest.approx(1.0, rel=1e-3)
     assert changes["joint0.coulomb"] == pytest.approx(1.4, rel=0.08)
