@@ -31,13 +31,9 @@ def test_a_joint_that_does_not_follow_at_all_is_told(follower: Callable[[Floats]
     assert follows(leader, follower(leader), 0.01) == told
 
 
-def test_a_joint_whose_leader_rests_need_not_follow() -> None:
+def test_where_the_leader_rests_moves_little_or_only_just_now_no_joint_is_accused() -> None:
     time = np.arange(0, 10, 0.01)
     assert follows(0.001 * np.sin(time), np.full_like(time, 0.5), 0.01)
-
-
-def test_where_the_leader_moves_little_or_only_just_now_no_joint_is_accused() -> None:
-    time = np.arange(0, 10, 0.01)
     assert follows(0.12 * np.sin(time), np.full_like(time, 0.05), 0.01)
     late = np.where(time < 9.8, 0.0, 0.6)
     assert follows(late, np.zeros_like(time), 0.01)
