@@ -44,16 +44,16 @@ def without(log: Log, share: float) -> Log:
 
 
 @contextmanager
-def few_simulated_logs() -> Iterator[None]:
-    """What fits are off is measured on one simulated log instead of six: no number here hangs on how well."""
+def simulated_logs(count: int) -> Iterator[None]:
+    """What fits are off is measured on so many simulated logs instead of six: no number here hangs on how well."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(bootstrap, "LOGS", 1)
+        patch.setattr(bootstrap, "LOGS", count)
         yield
 
 
 @pytest.fixture(autouse=True)
-def _few_simulated_logs() -> Iterator[None]:
-    with few_simulated_logs():
+def _no_simulated_logs() -> Iterator[None]:
+    with simulated_logs(0):
         yield
 
 
@@ -95,7 +95,7 @@ def shoulder_outcome(
     """From every third row or so, one to five ticks apart, a twentieth of them lost."""
     chosen = np.cumsum(np.random.default_rng(3).integers(1, 6, len(shoulder.fit.time)))
     log = without(rows(shoulder.fit, chosen[chosen < len(shoulder.fit.time)]), 0.05)
-    with few_simulated_logs():
+    with simulated_logs(0):
         return identify([log], white_box, validate=[shoulder.second], tables=tables)
 
 
@@ -106,5 +106,6 @@ def tables() -> list[ParameterTable]:
 
 @pytest.fixture(scope="session")
 def outcome(recorded: Recorded, white_box: ArmParameters, tables: list[ParameterTable]) -> IdentificationResult:
-    with few_simulated_logs():
+    """With deviations that one simulated log widens."""
+    with simulated_logs(1):
         return identify([recorded.fit], white_box, validate=[recorded.second, recorded.changed], tables=tables)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Callable
 from dataclasses import replace
 
@@ -12,12 +11,10 @@ import pytest
 from greywhale.arm import ArmParameters
 from greywhale.base.errors import UserError
 from greywhale.files import parameter_file
-from greywhale.files.arm import load_arm
 from greywhale.files.log import Log
 from greywhale.files.log.check import Check
 from greywhale.files.log.condition import Condition
 from greywhale.files.log.layout import Origin
-from greywhale.files.model import to_toml
 from greywhale.files.parameter_file import load_table
 from greywhale.identify import identify
 from greywhale.identify.checks import check
@@ -134,11 +131,3 @@ def test_tables_come_from_controller_files_and_backups(tmp_path_factory: pytest.
     path = tmp_path_factory.mktemp("tables") / "backup.toml"
     parameter_file.save(path, values_of("table_10"))
     assert load_table(path) == load_table(TABLES / "table_10.toml") == values_of("table_10")
-
-
-def test_a_table_tells_what_it_changes_and_a_file_keeps_it(tables: list[ParameterTable]) -> None:
-    changed = tables[1].changes()
-    assert changed
-    for pairs in (changed, {}):
-        text = to_toml(load_arm("white_box"), {"parameters": pairs})
-        assert tomllib.loads(text)["identification"] == {"parameters": pairs}

@@ -15,13 +15,6 @@ from greywhale.pictures import page
 from tools.support.recordings import TABLES, Recorded
 
 
-@pytest.fixture
-def found(monkeypatch: pytest.MonkeyPatch, outcome: IdentificationResult) -> IdentificationResult:
-    """The verb around an identification that has run already."""
-    monkeypatch.setattr(verb, "identify", lambda *logs, **options: outcome)
-    return outcome
-
-
 def arguments(recorded: Recorded, folder: Path) -> list[str]:
     logs = [recorded.fit.name, "-v", recorded.second.name, "-v", recorded.changed.name]
     controllers = ["-c", str(TABLES / "before_tuning.toml"), "-c", str(TABLES / "table_10.toml")]
@@ -30,12 +23,13 @@ def arguments(recorded: Recorded, folder: Path) -> list[str]:
 
 @pytest.mark.slow
 def test_text_model_and_pictures(
-    found: IdentificationResult,
+    outcome: IdentificationResult,
     recorded: Recorded,
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
+    monkeypatch.setattr(verb, "identify", lambda *logs, **options: outcome)
     monkeypatch.setattr(page, "DPI", 100)
     assert run([*arguments(recorded, tmp_path), "--pictures", str(tmp_path / "pictures")]) == 0
     text = capsys.readouterr().out

@@ -16,8 +16,7 @@ from greywhale.simulate import plant_row
 from tools.support.recordings import random_arm, record, table_of
 
 
-@pytest.mark.parametrize(("every", "low"), [(1, 0.9), (4, 0.75)])
-@pytest.mark.parametrize("seed", [1, 9])
+@pytest.mark.parametrize(("seed", "every", "low"), [(1, 1, 0.9), (9, 4, 0.75)])
 def test_noise_is_told_from_motion(tmp_path: Path, seed: int, every: int, low: float) -> None:
     """A quiet arm, whose converter steps are as large as its noise, and a noisy one; of every fourth tick more is
     smoothed away.

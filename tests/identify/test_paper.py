@@ -26,16 +26,12 @@ def test_table_4_gives_the_papers_arms(recorded: Recorded, white_box: ArmParamet
         np.testing.assert_allclose(search.plants(x)[0], plant_row(arm), rtol=1e-12)
 
 
-def test_the_budget_is_the_first_pack_and_fifty_moves() -> None:
-    assert pack_search.BUDGET == 510
-
-
-@pytest.mark.parametrize("method", ["paper-started", "gwo-woa"])
-def test_with_the_white_box_in_its_pack_no_search_ends_worse(
-    method: str, recorded: Recorded, white_box: ArmParameters, monkeypatch: pytest.MonkeyPatch
+def test_with_the_white_box_in_its_pack_the_search_does_not_end_worse(
+    recorded: Recorded, white_box: ArmParameters, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    assert pack_search.BUDGET == 510, "the first pack and fifty moves"
     monkeypatch.setattr(pack_search, "BUDGET", 20)
-    outcome = identify([recorded.fit], white_box, method=method, seed=3)
+    outcome = identify([recorded.fit], white_box, method="paper-started", seed=3)
     (fitted,) = outcome.verdicts
     assert outcome.found.simulations == 20
     assert outcome.complete

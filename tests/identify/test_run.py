@@ -150,27 +150,25 @@ def test_interrupt_before_any_model_is_an_interrupt(recorded: Recorded, white_bo
         identify([recorded.fit], white_box, report=ctrl_c_at("fitting the motors"))
 
 
-def test_model_that_learnt_its_controller_is_warned_about() -> None:
-    def verdict(name: str, role: str, model: float) -> LogVerdict:
-        return LogVerdict(name, role, "closed loop", (1.0, 0.0, 0.0, 0.0), (model, 0.0, 0.0, 0.0))
+def verdict(role: str, white_box: float, model: float, chance: float = 0.0) -> LogVerdict:
+    return LogVerdict("a", role, "closed loop", (1.0, white_box, 0.0, 0.0), (model, white_box, 0.0, 0.0), chance=chance)
 
-    good = [verdict("a", FIT, 0.1), verdict("b", SECOND, 0.2)]
-    assert warnings_of([*good, verdict("c", CHANGED, 0.3)]) == []
-    assert any("learnt that controller" in one for one in warnings_of([*good, verdict("c", CHANGED, 1.5)]))
-    worse = warnings_of([good[0], verdict("b", SECOND, 2.0), verdict("c", CHANGED, 1.5)])
+
+def test_model_that_learnt_its_controller_is_warned_about() -> None:
+    good = [verdict(FIT, 0.0, 0.1), verdict(SECOND, 0.0, 0.2)]
+    assert warnings_of([*good, verdict(CHANGED, 0.0, 0.3)]) == []
+    assert any("learnt that controller" in one for one in warnings_of([*good, verdict(CHANGED, 0.0, 1.5)]))
+    worse = warnings_of([good[0], verdict(SECOND, 0.0, 2.0), verdict(CHANGED, 0.0, 1.5)])
     assert len(worse) == 2
     assert all("worse than the arm file" in one for one in worse)
 
 
 def test_chance_decides_whether_a_model_is_worse() -> None:
-    def verdict(model: float, chance: float) -> LogVerdict:
-        return LogVerdict("a", SECOND, "closed loop", (1.0, 1.0, 0.0, 0.0), (model, 1.0, 0.0, 0.0), chance=chance)
-
-    assert (verdict(1.2, 0.3).is_as_good, verdict(1.2, 0.3).is_worse) == (True, False)
-    assert (verdict(1.4, 0.3).is_as_good, verdict(1.4, 0.3).is_worse) == (False, True)
-    assert (verdict(0.4, 0.3).is_as_good, verdict(0.4, 0.3).is_worse) == (False, False)
-    assert warnings_of([verdict(1.2, 0.3), verdict(0.4, 0.3)]) == []
-    assert "by more than chance explains (2.4 against 2 rad²)" in warnings_of([verdict(1.4, 0.3)])[0]
+    near, worse, better = (verdict(SECOND, 1.0, model, 0.3) for model in (1.2, 1.4, 0.4))
+    assert [one.is_as_good for one in (near, worse, better)] == [True, False, False]
+    assert [one.is_worse for one in (near, worse, better)] == [False, True, False]
+    assert warnings_of([near, better]) == []
+    assert "by more than chance explains (2.4 against 2 rad²)" in warnings_of([worse])[0]
 
 
 @pytest.mark.slow
@@ -219,16 +217,3 @@ def test_second_round_is_as_good_as_the_arm_that_it_began_with(
         assert "as good as the model before, as far as noise lets tell" in text
         assert again.arm.name == outcome.arm.name
     assert "-" not in "".join(line.rpartition("   ")[2] for line in text.splitlines() if line.startswith("all joints"))
-
-
-@pytest.mark.slow
-def test_model_that_is_really_worse_is_told(outcome: IdentificationResult) -> None:
-    """A joint's friction half of what it is: the arm file that the search began with knew better."""
-    found = outcome.found
-    assert found.draws is not None
-    worse = np.vstack([found.plant, found.draws])
-    for name in ("coulomb", "breakaway"):
-        worse[:, column(name, 1)] *= 0.5
-    verdict = judge(outcome.subjects[1], outcome.arm, worse[0], found.zero, found.joints, worse[1:])
-    assert verdict.is_worse
-    assert warnings_of([verdict])

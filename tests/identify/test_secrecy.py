@@ -17,7 +17,7 @@ opened = []
 sys.addaudithook(lambda event, arguments: opened.append(str(arguments[0])) if event == "open" else None)
 from greywhale.cli.entry import run
 from greywhale.identify import bootstrap
-bootstrap.LOGS = 1 # it takes long, and opens nothing
+bootstrap.LOGS = 0 # it takes long, and opens nothing
 code = run(sys.argv[1:])
 sys.stdout.flush()
 bench = [name for name in sys.modules if name.split(".")[0] == "greywhale_sim"]

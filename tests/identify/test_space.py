@@ -17,9 +17,7 @@ ALL = tuple(KINDS)
 BODY = set(range(column("torque_per_volt", 0)))  # what depends on the links alone
 
 
-@pytest.mark.parametrize(
-    ("name", "kinds"), [("white_box", MOTOR), ("grey_box", MOTOR), ("default", MOTOR), ("worn", ALL)]
-)
+@pytest.mark.parametrize(("name", "kinds"), [("white_box", MOTOR), ("worn", ALL)])
 def test_motors_friction_and_gears_start_as_the_users_arm(name: str, kinds: tuple[str, ...]) -> None:
     arm = load_arm(name)
     space = Space.of(arm, kinds, range(JOINTS))
@@ -67,8 +65,8 @@ def test_a_vector_moves_to_a_larger_space() -> None:
     assert np.exp(known["joint0.coulomb"]) == pytest.approx(KINDS["coulomb"].start)
 
 
-@pytest.mark.parametrize("name", ["white_box", "grey_box", "default"])
-@pytest.mark.parametrize("damping", [0.3, 1.0, 4.0])
+@pytest.mark.parametrize("name", ["white_box", "default"])
+@pytest.mark.parametrize("damping", [0.3, 4.0])
 def test_identified_plants_become_motors(name: str, damping: float) -> None:
     """Also where there is less damping than the user's Kt would brake: then Kt gives way, not the damping."""
     arm = load_arm(name)

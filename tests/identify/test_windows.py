@@ -118,18 +118,6 @@ def test_start_of_a_window_is_not_held_against_a_candidate(recorded: Recorded, w
     assert np.sum((error / log.noise[0]) ** 2) > 500.0
 
 
-def test_windows_with_different_times_between_rows_do_not_disturb_each_other(white_box: ArmParameters) -> None:
-    """Several candidates and windows share a processor's vector; here no two windows may."""
-    given = arguments(white_box, 5)
-    spacing = H * SUBSTEPS * np.random.default_rng(2).uniform(0.5, 1.5, 150)
-    together = np.asarray(_native.simulate_windows(**(given | {"spacing": spacing})))
-    for window in range(3):
-        alone = {key: given[key][window : window + 1] for key in ("first", "angles", "velocities", "sides", "places")}
-        single = np.asarray(_native.simulate_windows(**(given | {"spacing": spacing} | alone)))
-        np.testing.assert_array_equal(together[:, window : window + 1], single)
-    assert np.max(np.abs(together[0, 0] - np.asarray(_native.simulate_windows(**given))[0, 0])) > 1e-6
-
-
 def test_joints_that_do_not_feel_each_other_share_a_simulation(recorded: Recorded, white_box: ArmParameters) -> None:
     """Derivatives with joints varied together are those of one number at a time, but for what coupling leaves out."""
     log = prepare(recorded.fit, 1)

@@ -89,16 +89,13 @@ def modelled(deviation: float) -> ArmParameters:
     return arm.model_copy(update={"identification": facts})
 
 
-@pytest.mark.parametrize("text", ["1", "1:0.5", "4:-1:1", "x:-1:1", "1:a:b", "1:-1:1:1"])
-def test_a_range_that_is_none_is_refused(text: str) -> None:
-    with pytest.raises(UserError, match="--range is") as refused:
-        parse_range(text)
-    assert refused.value.exit_code == BAD_USAGE
-
-
-@pytest.mark.parametrize("text", ["1:1:-1", "1:0:0", "1:-9:1", "1:nan:1"])
-def test_a_range_that_is_empty_or_too_far_says_so(text: str) -> None:
-    with pytest.raises(UserError, match="--range is .*±7 rad") as refused:
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [(none, "") for none in ("1", "4:-1:1", "1:a:b", "1:-1:1:1")]
+    + [(wrong, ".*±7 rad") for wrong in ("1:1:-1", "1:0:0", "1:-9:1", "1:nan:1")],
+)
+def test_a_range_that_is_none_or_empty_or_too_far_is_refused(text: str, words: str) -> None:
+    with pytest.raises(UserError, match=f"--range is {words}") as refused:
         parse_range(text)
     assert refused.value.exit_code == BAD_USAGE
     assert parse_range("2:-0.5:0.75") == (2, (-0.5, 0.75))

@@ -118,7 +118,6 @@ def test_an_arm_far_weaker_than_its_file_is_led_more_slowly_and_without_a_fault(
         (("--every", "9"), "1 to 4"),
         (("--enable",), "leave --enable out"),
         (("--arm", "nowhere.toml"), "nowhere.toml"),
-        (("--save-motion", "nowhere/motion.csv"), "does not exist"),
         (("-o", "nowhere/log.csv"), "does not exist"),
     ],
 )
@@ -131,7 +130,7 @@ def test_what_cannot_work_is_refused_before_a_board_is_asked(
     assert "/dev/nothing" not in sentence
 
 
-@pytest.mark.parametrize("option", [("--arm", "white_box"), ("--range", "0:-1:1"), ("--seed", "1"), ("--budget", "9")])
+@pytest.mark.parametrize("option", [("--arm", "white_box"), ("--seed", "1")])
 def test_options_of_the_excitation_are_refused_without_it(
     option: tuple[str, str], capsys: pytest.CaptureFixture[str]
 ) -> None:
