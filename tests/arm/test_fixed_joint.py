@@ -88,25 +88,10 @@ def test_batch_single_run_and_ideal_law_hold_it(make_arm: Any, worn: bool) -> No
 def test_windows_hold_it_bit_by_bit(make_arm: Any) -> None:
     arm, rows, substeps, h = with_joints(make_arm, (1, 3)), 50, 4, 0.25e-3
     volts = np.random.default_rng(5).uniform(-15, 15, (rows * substeps, 4))
-    start = np.array([[0.0, 0.2, 0.0, 0.4]])
-    zeros = np.zeros((1, 4))
-    angles = np.asarray(
-        _native.simulate_windows(
-            plants=plant_row(arm)[None],
-            first=np.zeros(1, dtype=np.int64),
-            angles=start,
-            rows=rows,
-            volts=volts,
-            spacing=np.full(rows, h * substeps),
-            substeps=substeps,
-            every=1,
-            offsets=zeros,
-            kicks=zeros,
-            velocities=zeros,
-            sides=zeros,
-            places=zeros,
-        )
-    )[0, 0]
+    window: dict[str, Any] = {"first": np.zeros(1, dtype=np.int64), "angles": np.array([[0.0, 0.2, 0.0, 0.4]])}
+    window |= {name: np.zeros((1, 4)) for name in ("offsets", "kicks", "velocities", "sides", "places")}
+    window |= {"rows": rows, "spacing": np.full(rows, h * substeps), "substeps": substeps, "every": 1}
+    angles = np.asarray(_native.simulate_windows(plants=plant_row(arm)[None], volts=volts, **window))[0, 0]
     np.testing.assert_array_equal(angles[:, [0, 2]], 0.0)
     assert np.ptp(angles[:, [1, 3]], axis=0).min() > 0.001
 
