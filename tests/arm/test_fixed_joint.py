@@ -13,7 +13,7 @@ from scipy.integrate import solve_ivp
 from greywhale import _native
 from greywhale.arm import Arm, ArmParameters
 from greywhale.arm.export import JOINT_IDS, LINK_NAMES, mjcf, urdf
-from greywhale.arm.plants import plant_row
+from greywhale.arm.plants import plant_row, rigid_joints
 from greywhale.base.errors import UserError
 from greywhale.files.arm import load_arm
 from greywhale.files.model import arm_toml
@@ -71,6 +71,7 @@ def test_the_rest_moves_as_the_arm_with_its_row_and_column_removed(make_arm: Any
 @pytest.mark.parametrize("worn", [False, True])
 def test_batch_single_run_and_ideal_law_hold_it(make_arm: Any, worn: bool) -> None:
     arm = with_joints(make_arm, (0, 1), "worn" if worn else "default")
+    assert rigid_joints(plant_row(arm)).tolist() == [False, False, True, True]
     experiment = Experiment(human_reaches(4, 3.0), arm, noise=False)
     batch, exact = experiment.run(every=1, steps_per_tick=4), experiment.run_exact(every=1)
     for result in (batch, exact):
