@@ -41,7 +41,9 @@ def test_the_demo_tells_its_story_and_proves_its_controllers_on_the_arm(
         monkeypatch.setattr(motions, name, value)
     told: list[str] = []
     out = tmp_path / "new" / "demo"
-    options = DemoOptions(out, arm=arm_with_joints(1, tmp_path), duration_s=4.0, practice_s=10.0, budget=99, prove=True)
+    options = DemoOptions(
+        out, arm=arm_with_joints(1, tmp_path), duration_s=4.0, practice_s=10.0, budget=200, prove=True
+    )
     result = run(options, lambda what, fraction, note="": told.append(what))
     recordings = ["before", "after", "proven", "practice", "check", "check_changed"]
     leaders = ["leader", "rest_leader", "practice_leader", "check_leader", "check_changed_leader"]

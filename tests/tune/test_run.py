@@ -192,12 +192,15 @@ def test_a_joint_whose_best_would_shake_its_gear_gets_less_voltage(
 def test_the_benchs_own_arithmetic_has_the_last_word(
     sure: Model, unjudged: None, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Every change of joint 1 looks better in single precision, and is worse in truth."""
+    """Every change of joint 1 looks better in single precision, and is worse in truth. With its controller from before
+    the others' quicker moves shake it a little.
+    """
 
     def judge_costs(self: Any, controllers: np.ndarray, exact: bool = False) -> np.ndarray:
         changed = (controllers != self.start).any(axis=2)
         costs = np.where(changed, 0.5, 1.0)
-        costs[:, 1] = np.where(changed[:, 1] & exact, 2.0, costs[:, 1])
+        if exact:
+            costs[:, 1] = np.where(changed[:, 1], 2.0, np.where(changed.any(axis=1), 1.04, 1.0))
         return np.asarray(costs)
 
     monkeypatch.setattr(DefaultMethod, "judge_costs", judge_costs)
@@ -210,7 +213,7 @@ def test_where_the_arm_itself_will_judge_unrest_on_the_model_counts_less(
     sure: Model, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(default, "penalty", lambda unrest, quiet_v: np.ones((1, 4)))
-    monkeypatch.setattr(Standard, "falls_short", lambda self, unrest: np.ones((1, 4), dtype=bool))
+    monkeypatch.setattr(Standard, "falls_short", lambda self, unrest, kept: np.ones((1, 4), dtype=bool))
     task = TuningRequest(sure, "both", "default", 1, 0, 1, sure.controllers, {}, show_no_progress, floors=False)
     rows = sure.controllers[None]
     usual = DefaultMethod(task).judge_costs(rows)

@@ -173,6 +173,7 @@ def _prices() -> dict[str, float]:
         "loud": margins.LOUD_PRICE,
         "lost_at_rest": margins.LOST_PRICE,
         "same": standard.SAME,
+        "shaken": standard.SHAKEN,
     }
 
 

@@ -47,7 +47,9 @@ def tuning() -> dict[str, Any]:
         with TuningJournal(None, {}) as journal:
             method.search(journal)
         judged = np.stack([model.controllers, method.found.best, restless(model.controllers)])
-        short = method.standard.falls_short(method.judging_margins.unrest(judged, exact=True))
+        short = method.standard.falls_short(
+            method.judging_margins.unrest(judged, exact=True), (judged == model.controllers).all(axis=2)
+        )
     return {
         "pack": PACK,
         "budget": BUDGET,

@@ -12,6 +12,7 @@ from greywhale.tune.judge.margins import AT_REST, DELAY, MOVING, TEETH, Margin, 
 from greywhale.tune.judge.standard import Standard
 
 SUPPLY_V = 15.0
+NONE = np.zeros(4, dtype=bool)
 
 
 def margins(**changes: tuple[int, float]) -> tuple[Margin, ...]:
@@ -41,14 +42,20 @@ BEFORE = margins(delay=(2, 0.0))
     ],
 )
 def test_nothing_may_get_worse_than_before(after: tuple[Margin, ...], short: bool) -> None:
-    assert Standard.of(BEFORE, SUPPLY_V).joints_short(after).tolist() == [False, short, False, False]
+    assert Standard.of(BEFORE, SUPPLY_V).joints_short(after, NONE).tolist() == [False, short, False, False]
 
 
 def test_who_was_loud_may_stay_so_and_a_level_asks_for_more() -> None:
     loud = margins(at_rest=(0, 0.9))
     np.testing.assert_allclose(Standard.of(loud, SUPPLY_V).quiet_v, [0.45, 0.9, 0.45, 0.45])
-    assert not Standard.of(loud, SUPPLY_V).joints_short(loud).any()
-    assert Standard.of(loud, SUPPLY_V, level=2.0).joints_short(loud).tolist() == [False, True, False, False]
+    assert not Standard.of(loud, SUPPLY_V).joints_short(loud, NONE).any()
+    assert Standard.of(loud, SUPPLY_V, level=2.0).joints_short(loud, NONE).tolist() == [False, True, False, False]
+
+
+@pytest.mark.parametrize(("ripple_v", "short"), [(0.56, False), (0.57, True)])
+def test_who_keeps_its_controller_may_be_shaken_by_its_neighbours(ripple_v: float, short: bool) -> None:
+    after = margins(at_rest=(0, ripple_v))
+    assert Standard.of(BEFORE, SUPPLY_V).joints_short(after, ~NONE).tolist() == [False, short, False, False]
 
 
 def test_candidates_are_judged_as_the_margins_of_one_are() -> None:
@@ -59,7 +66,7 @@ def test_candidates_are_judged_as_the_margins_of_one_are() -> None:
     wild[2, 8] *= 60
     rows = np.stack([default_controller(), wild])
     standard = Standard.of(judge.check(rows[0]), SUPPLY_V)
-    many = standard.falls_short(judge.unrest(rows, exact=True))
+    many = standard.falls_short(judge.unrest(rows, exact=True), (rows == rows[0]).all(axis=2))
     assert not many[0].any()
     assert many[1, 2]
-    assert standard.joints_short(judge.check(wild))[2]
+    assert standard.joints_short(judge.check(wild), NONE)[2]

@@ -69,6 +69,8 @@ SHORT_BUDGET = 1000  # evaluations; below that, more rounds of a smaller pack fi
 JUDGING_SEED = 1000  # of sensor noise that the search does not know by heart
 # More than any controller costs: none is chosen that falls short of the standard.
 UNFIT = 100.0
+# A joint that keeps its controller may lose so much to its neighbours' quicker moves before they step back.
+FAIR_TO_KEPT = 1.05
 # But if the arm itself will judge, a joint that only the model calls restless gets its chance there.
 ON_TRIAL = 0.1
 # Shares of the best's Ku and Ki that compete in the last judgement: full voltage may shake gears, and an integral swing
@@ -186,7 +188,7 @@ class DefaultMethod:
         unrest = self.judging_margins.unrest(controllers, exact=exact)
         if self.task.on_trial:
             return costs + ON_TRIAL * penalty(unrest, self.standard.quiet_v)
-        return costs + UNFIT * self.standard.falls_short(unrest)
+        return costs + UNFIT * self.standard.falls_short(unrest, (controllers == self.start).all(axis=2))
 
     def _contenders(self) -> Controllers:
         """The best few of every joint (k, 4, 13), and the best with less voltage or integral: steadier and quieter."""
@@ -214,10 +216,10 @@ class DefaultMethod:
         while True:
             before_cost, after_cost = judge_exactly(np.stack([self.start, after]))
             margins = self.judging_margins.check(after)
-            worse = after_cost > FAIR * before_cost
-            if not self.task.on_trial:
-                worse |= self.standard.joints_short(margins)
             changed = (after != self.start).any(axis=1)
+            worse = after_cost > np.where(changed, FAIR, FAIR_TO_KEPT) * before_cost
+            if not self.task.on_trial:
+                worse |= self.standard.joints_short(margins, ~changed)
             if not (worse & changed).any():  # a neighbour's doing
                 worse = np.full(len(after), worse.any())
             if not (worse & changed).any():
@@ -228,12 +230,14 @@ class DefaultMethod:
                 after[joint] = others[joint].pop(0)
 
     def _next_best(self, after: Controllers, contenders: Controllers, joint: int, judge: Judge) -> list[Controllers]:
-        """The rows that a joint may have in the place of its own, the best first; the last is the one from before."""
+        """The rows that a joint may have in the place of its own, the best first, then the calmest and the one from
+        before.
+        """
         rows = np.repeat(after[None], len(contenders), axis=0)
         rows[:, joint] = contenders[:, joint]
         costs = judge(rows).sum(axis=1)
         order = [k for k in np.argsort(costs, kind="stable") if not np.array_equal(contenders[k, joint], after[joint])]
-        return [*(contenders[k, joint] for k in order[:SECOND_CHANCES]), self.start[joint]]
+        return [*(contenders[k, joint] for k in order[:SECOND_CHANCES]), contenders[-1, joint], self.start[joint]]
 
     def judge(self) -> Judgement:
         task, model = self.task, self.model

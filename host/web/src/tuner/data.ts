@@ -65,7 +65,7 @@ export type SearchData = {
 export type Price =
   | "soon_s" | "rms" | "rattle" | "louder" | "quiet_rad" | "chatter_moving" | "bearable" | "chatter_moving_hz" | "effort"
   | "lost" | "limit_cycle_turns" | "chatter_at_rest_hz" | "quiet_share" | "search_ripple" | "search_chatter" | "travel"
-  | "chatter_at_rest" | "fail" | "teeth" | "ripple" | "loud" | "lost_at_rest" | "same";
+  | "chatter_at_rest" | "fail" | "teeth" | "ripple" | "loud" | "lost_at_rest" | "same" | "shaken";
 
 export type TunerData = {
   readonly settings: readonly number[];

@@ -58,23 +58,25 @@ export class Unrests {
 /** What must hold as it did before: every scenario but the softer teeth, and quiet at rest (tune/judge/standard.py). */
 export class Standard {
   private readonly judge: Unrests;
-  private readonly before: Scenarios;
+  private readonly held: Scenarios;
   /** The ripple that each joint may have at rest, V. */
   readonly quietV: readonly number[];
 
-  constructor(module: TunerModule, private readonly data: TunerData, before: Controllers) {
+  constructor(module: TunerModule, private readonly data: TunerData, private readonly before: Controllers) {
     this.judge = new Unrests(module, data, data.rests.judging);
-    this.before = this.judge.of([before], true);
-    this.quietV = this.before[0]![1][0]!.map(({ ripple }) => Math.max(ripple, data.prices.quiet_share * data.supply_v));
+    this.held = this.judge.of([before], true);
+    this.quietV = this.held[0]![1][0]!.map(({ ripple }) => Math.max(ripple, data.prices.quiet_share * data.supply_v));
   }
 
   /** The joints that fall short of it. */
   short(controllers: Controllers): number[] {
     const now = this.judge.of([controllers], true);
+    const { before, data: { prices } } = this;
     return this.quietV.flatMap((quiet, joint) => {
-      const loud = now[0]![1][0]![joint]!.ripple > this.data.prices.same * quiet;
+      const kept = controllers[joint]!.every((value, column) => value === before[joint]![column]);
+      const loud = now[0]![1][0]![joint]!.ripple > (kept ? prices.shaken : prices.same) * quiet;
       const fails = now.some(([name, found], place) =>
-        name !== TEETH && found[0]![joint]!.fails && !this.before[place]![1][0]![joint]!.fails);
+        name !== TEETH && found[0]![joint]!.fails && !this.held[place]![1][0]![joint]!.fails);
       return loud || fails ? [joint] : [];
     });
   }

@@ -18,8 +18,9 @@ from greywhale.motion.swings import QUIET_SHARE
 from greywhale.protocol.firmware import JOINTS
 from greywhale.tune.judge.margins import AT_REST, TEETH, Margin, Unrest
 
-# Ripple is a figure of noise: the same controller differs so much from one noise to another.
-SAME = 1.05
+# Ripple is a figure of noise: the same controller differs so much from one noise to another; and by so much where its
+# neighbours, which move quicker, shake the joint.
+SAME, SHAKEN = 1.05, 1.25
 
 
 @dataclass(frozen=True)
@@ -40,21 +41,21 @@ class Standard:
                 ripple[margin.joint] = margin.ripple_v
         return cls(failing, np.maximum(ripple, QUIET_SHARE * supply_v) / level)
 
-    def falls_short(self, unrest: Mapping[str, Unrest]) -> Flags:
-        """Which joints of which candidates do: (n, 4)."""
-        short: Flags = unrest[AT_REST].ripple.max(axis=1) > SAME * self.quiet_v
+    def falls_short(self, unrest: Mapping[str, Unrest], kept: Flags) -> Flags:
+        """Which joints of which candidates do: (n, 4); so do `kept`, those with the controller from before."""
+        short: Flags = unrest[AT_REST].ripple.max(axis=1) > np.where(kept, SHAKEN, SAME) * self.quiet_v
         for scenario, found in unrest.items():
             if scenario == TEETH:
                 continue
             short = short | (found.fails.sum(axis=1) > self.failing.get(scenario, 0))
         return short
 
-    def joints_short(self, margins: tuple[Margin, ...]) -> Flags:
-        """Which joints of one controller do: (4,)."""
+    def joints_short(self, margins: tuple[Margin, ...], kept: Flags) -> Flags:
+        """Which joints of one controller do: (4,); so do `kept`."""
         short = np.zeros(JOINTS, dtype=bool)
         for margin in margins:
             joint, scenario = margin.joint, margin.scenario
-            loud = scenario == AT_REST and margin.ripple_v > SAME * self.quiet_v[joint]
+            loud = scenario == AT_REST and margin.ripple_v > (SHAKEN if kept[joint] else SAME) * self.quiet_v[joint]
             fails = scenario != TEETH and margin.plants_failing > self.failing[scenario][joint]
             short[joint] |= loud or fails
         return short
