@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from greywhale.arm import ArmParameters
-from greywhale.arm.plants import check_plants, column
+from greywhale.arm.plants import PLANT_COLUMNS, check_plants, column, columns
 from greywhale.base.errors import UserError
 from greywhale.files.arm import load_arm
-from greywhale.identify import IdentificationResult, sampled_plants
+from greywhale.identify import IdentificationResult, loosen_gears, sampled_plants
 from greywhale.identify.found_model import Rival
 from greywhale.identify.space import Space
 from greywhale.simulate import plant_row
@@ -72,6 +72,32 @@ def test_draws_have_the_covariance_of_the_file(model: ArmParameters, outcome: Id
     np.testing.assert_allclose(
         np.cov(np.array(taken)) / np.outer(scale, scale), wanted / np.outer(scale, scale), atol=0.1
     )
+
+
+@pytest.mark.slow
+def test_looser_gears_have_wider_gaps_and_softer_teeth_and_nothing_else_changes(model: ArmParameters) -> None:
+    estimate, loose = (loosen_gears(model, deviations) for deviations in (0.0, 1.0))
+    other = {PLANT_COLUMNS[place].split(".")[1] for place in np.flatnonzero(loose != estimate)}
+    assert other == {"half_gap", "stiffness", "mesh_damping"}
+    assert (loose[columns("half_gap")] > estimate[columns("half_gap")]).all()
+    softer = loose[columns("stiffness")] / estimate[columns("stiffness")]
+    assert (softer < 1.0).all()
+    np.testing.assert_allclose(loose[columns("mesh_damping")] / estimate[columns("mesh_damping")], softer)
+    bare = load_arm("white_box")
+    np.testing.assert_array_equal(loosen_gears(bare, 1.0), plant_row(bare))
+
+
+def test_a_joint_without_teeth_gets_the_loosest_ones_of_its_rivals() -> None:
+    other = plant_row(load_arm("default"))
+    softer = other.copy()
+    softer[columns("stiffness") + columns("mesh_damping")] /= 2.0
+    alpha = {"name": "joint0.alpha", "value": 5.0}
+    rivals = [{"order": "backlash", "plant": rival.tolist()} for rival in (other, softer)]
+    facts = {"parameter": [alpha], "covariance": [[0.01]], "rival": rivals}
+    loose = loosen_gears(load_arm("white_box").model_copy(update={"identification": facts}), 1.0)
+    gear = columns("half_gap") + columns("stiffness") + columns("mesh_damping")
+    np.testing.assert_array_equal(loose[gear], softer[gear])
+    assert loose[column("torque_per_volt", 0)] == pytest.approx(0.2)
 
 
 @pytest.mark.slow

@@ -25,7 +25,7 @@ from greywhale.identify import identify
 from greywhale.optimise import DEFAULT
 from greywhale.optimise.significance import holm
 from greywhale.protocol.table import ParameterTable
-from greywhale.tune.default import SEARCH_PLANTS, DefaultMethod
+from greywhale.tune.default import DefaultMethod
 from greywhale.tune.model import Model, load_model
 from greywhale.tune.request import TuningRequest
 from greywhale.tune.search.journal import TuningJournal
@@ -64,7 +64,7 @@ def judged_model(text: str) -> tuple[Model, DefaultMethod]:
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "model.toml"
         path.write_text(text, encoding="utf-8")
-        model = load_model(path, force=True, samples=SEARCH_PLANTS)
+        model = load_model(path, force=True, samples=1)  # and looser gears, as in the search
     return model, method_of(model, DEFAULT, OTHER_SEED, 1)
 
 

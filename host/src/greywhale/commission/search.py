@@ -4,8 +4,8 @@ The tuning does not know the check and its limits; this search does, and its tri
 the scaling factors of the tuned controllers by the tuning's own optimiser. What a trial shows beyond the model corrects
 the next search. A joint costs the root of its error in what a hand leads, as a share of that before, and more
 
-- beyond a share of what the check allows, and where it hunts on a worse arm: the loosest gears that the recordings
-  allow, more loop gain, slower potentiometers;
+- beyond a share of what the check allows, and where it hunts on a worse arm: looser gears, more loop gain, slower
+  potentiometers;
 - where it would follow steps hardly better than before, if the model knows the joint's steps, swing between them,
   overshoot in moves, or hiss after them;
 - for the tuning's margins, without twice the loop gain and softer teeth, for which the worse arm stands.
@@ -27,13 +27,14 @@ from greywhale.commission.measures import Measures, measure
 from greywhale.commission.predict import LedModel
 from greywhale.commission.trials import Trial, Trials
 from greywhale.fuzzy.settings import GAIN_UNIT
+from greywhale.identify import loosen_gears
 from greywhale.motion.swings import QUIET_SHARE
 from greywhale.protocol.firmware import JOINTS
 from greywhale.protocol.joints import unused
 from greywhale.protocol.table import CONTROLLER_COLUMNS
 from greywhale.simulate.controllers import controllers_of
 from greywhale.tune.default import METHOD
-from greywhale.tune.judge.margins import TEETH, TWICE, Margins, loosest_plant, penalty, with_gain
+from greywhale.tune.judge.margins import TEETH, TWICE, Margins, penalty, with_gain
 from greywhale.tune.model import Model
 from greywhale.tune.search import lockstep
 from greywhale.tune.search.journal import TuningJournal
@@ -61,6 +62,7 @@ NONE = np.zeros(JOINTS, dtype=bool)
 LEAST_KI = 30.0  # V/(rad s), where the search begins anew
 NO_LIMIT_V = np.full(JOINTS, np.inf)  # of ripple in the margins' rests: the check's is limited
 LEAST_RAD2 = 1e-9
+LOOSER = 1.0  # standard deviations of the worse arm's gears
 KI, KU, CE_TICKS = (CONTROLLER_COLUMNS.index(name) for name in ("ki", "ku_mv", "ce_ticks"))
 
 
@@ -83,7 +85,7 @@ class CheckOnModel:
     def of(cls, model: Model, trials: Trials, foresight: Foresight, seed: int, threads: int) -> CheckOnModel:
         """For the trials to come, after that of the controllers from before."""
         arm, table, before = with_usual_noise(model.arm), trials.table.with_raw(trials.others), trials.before
-        plants, running = np.vstack([plant_row(arm), loosest_plant(model.plants)]), controllers_of(table)[None]
+        plants, running = np.vstack([plant_row(arm), loosen_gears(arm, LOOSER)]), controllers_of(table)[None]
         margins = Margins(arm, table, plants, threads=threads, searching=True, seed=seed)
         plants = np.vstack([plants[:1], _worsen(plants[1:])])
         led = LedModel(arm, table, before.traces)

@@ -7,6 +7,14 @@
 from greywhale.identify.found_model import ParameterEstimate
 from greywhale.identify.result import IdentificationResult
 from greywhale.identify.run import METHODS, identify, validated
-from greywhale.identify.samples import sampled_plants
+from greywhale.identify.samples import loosen_gears, sampled_plants
 
-__all__ = ["METHODS", "IdentificationResult", "ParameterEstimate", "identify", "sampled_plants", "validated"]
+__all__ = [
+    "METHODS",
+    "IdentificationResult",
+    "ParameterEstimate",
+    "identify",
+    "loosen_gears",
+    "sampled_plants",
+    "validated",
+]

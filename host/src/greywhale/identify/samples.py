@@ -10,10 +10,11 @@ from typing import Any
 import numpy as np
 
 from greywhale.arm import ArmParameters
-from greywhale.arm.plants import PLANT_COLUMNS, check_plants
+from greywhale.arm.plants import PLANT_COLUMNS, check_plants, column
 from greywhale.base.errors import BadUsage, UserError
 from greywhale.base.types import Floats
 from greywhale.identify.space import KINDS, Parameter, Space
+from greywhale.protocol.firmware import JOINTS
 from greywhale.simulate import plant_row
 
 EVERY = 3  # a rival takes the place of one draw in so many
@@ -40,6 +41,27 @@ def sampled_plants(arm: ArmParameters, count: int, seed: int = 0) -> Floats:
     for number, row in enumerate(range(EVERY, count, EVERY) if len(rivals) else ()):
         plants[row] = rivals[number % len(rivals)]
     return plants
+
+
+def loosen_gears(arm: ArmParameters, deviations: float) -> Floats:
+    """The plant (columns,) of an identified arm with wider gaps and softer teeth, by so many standard deviations.
+
+    A joint without teeth gets the loosest ones that any rival gives it. Without a covariance nothing says by how much,
+    and it is the estimate.
+    """
+    if "covariance" not in (arm.identification or {}):
+        return plant_row(arm)
+    space, x, covariance = read_search(arm)
+    looser = np.array([deviations if one.kind in ("gap", "teeth") else 0.0 for one in space.parameters])
+    loose: Floats = space.plants((x + looser * np.sqrt(np.diag(covariance)))[None])[0]
+    rivals = _read_rivals(arm)
+    for joint in range(JOINTS):
+        gap, stiffness, damping = (column(name, joint) for name in ("half_gap", "stiffness", "mesh_damping"))
+        toothed = rivals[rivals[:, stiffness] > 0.0]
+        if loose[stiffness] == 0.0 and len(toothed):
+            loose[gap] = toothed[:, gap].max()
+            loose[[stiffness, damping]] = toothed[:, [stiffness, damping]].min(axis=0)
+    return loose
 
 
 def draw_plants(space: Space, x: Floats, covariance: Floats, count: int, seed: int = 0) -> Floats:

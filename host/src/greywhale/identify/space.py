@@ -53,7 +53,7 @@ def ranges(kinds: Sequence[Kind], start: Floats) -> tuple[Floats, Floats]:
 # Friction at rest and load friction end at a half. Voltages alone are explained as well by more, but such a
 # joint sticks in a closed loop where the real one moves (docs/real_data.md).
 KINDS = {
-    "alpha": Kind("V/(N m)", "voltage a torque needs, R/(N Kt)", True, 0.0, 1 / 30, 30.0, 2e-3, 1.0),
+    "alpha": Kind("V/(N m)", "voltage a torque needs, R/(N Kt)", True, 0.0, 1 / 30, 30.0, 2e-3, 0.4),
     "inertia": Kind("V s²/rad", "voltage an acceleration needs, R N J/Kt", True, 0.0, 1 / 100, 100.0, 2e-3, 1.0),
     "damping": Kind("V s/rad", "voltage a speed needs, N Kt + N Bm R/Kt", True, 0.0, 1 / 30, 30.0, 2e-3, 1.0),
     "coulomb": Kind("V", "Coulomb friction at the motor", True, 0.3, 1 / 30, 30.0, 2e-3, 1.0),

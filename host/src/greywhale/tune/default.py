@@ -21,6 +21,7 @@ from typing import Any
 import numpy as np
 
 from greywhale.arm.parameters import with_usual_noise
+from greywhale.arm.plants import joint_columns
 from greywhale.base.errors import counted
 from greywhale.base.types import Controllers, Floats
 from greywhale.optimise.optimiser import PACK
@@ -29,7 +30,7 @@ from greywhale.protocol.joints import unused
 from greywhale.protocol.table import CONTROLLER_COLUMNS
 from greywhale.tune.judge.choose import FAIR, Judge, Remembering, choose
 from greywhale.tune.judge.held_out import judge_held_out
-from greywhale.tune.judge.margins import MOVING, REST_LONG_S, Margin, Margins, loosest_plant, penalty
+from greywhale.tune.judge.margins import MOVING, REST_LONG_S, Margin, Margins, penalty
 from greywhale.tune.judge.standard import Standard
 from greywhale.tune.method import Costs, Judgement
 from greywhale.tune.model import Model
@@ -62,7 +63,7 @@ STAGES = (
     Stage("shape at last", 0.15, 0.05),
     Stage("every corner", 0.3, 0.03, every_corner=True),
 )
-# The search tracks on so many plants, the estimate among them; the last judgement uses all.
+# The search tracks on so many plants, the estimate first; the last judgement uses all.
 SEARCH_PLANTS = 2
 FULL_PACK = 16  # on two plants: that fills the lanes of the simulation twice
 SHORT_BUDGET = 1000  # evaluations; below that, more rounds of a smaller pack find more
@@ -93,16 +94,14 @@ class DefaultMethod:
         motions = self._motions(task.seed)
         scale = scale_of(motions, model.plants, task.before, task.threads)
         some = model.plants[:SEARCH_PLANTS]
-        # The samples, and the estimate with the loosest gears that any of them has.
-        self.everywhere = np.vstack([model.plants, loosest_plant(model.plants)])
         self.objective = Objective(motions, some, scale.first(len(some)), task.threads)
         other_noise = self._motions(task.seed + JUDGING_SEED)
         self.judging = Objective(other_noise, model.plants, scale, task.threads)
         # Longer and with other noise, since a search learns its own noise by heart.
-        self.judging_margins = self._margins(self.everywhere, rest_s=REST_LONG_S, noise=1)
+        self.judging_margins = self._margins(model.plants, rest_s=REST_LONG_S, noise=1)
         # With bounds, what is uploaded keeps within them, whatever ran before.
         self.start = self.space.controllers(self.space.points(task.before[None]))[0] if task.bounds else task.before
-        self.margins = self._margins(self.everywhere[[0, -1]], searching=True)
+        self.margins = self._margins(some, searching=True)
         self.margins_before = self.judging_margins.check(self.start)
         self.standard = Standard.of(self.margins_before, self.table.supply_v, task.quiet)
         self.found = SearchState.nothing(self.start)
@@ -148,13 +147,17 @@ class DefaultMethod:
             self._run(stage, number, share // len(lockstep.TURNS), journal, tick)
 
     def _add_hard_plant(self) -> None:
-        """From now on the margins are looked at also on the plant where the best so far fails most of them."""
-        unrest = self.judging_margins.unrest(self.found.best[None])
-        fails = np.sum([one.fails[0].sum(axis=1) for one in unrest.values()], axis=0)
-        known = (self.everywhere[:, None] == self.margins.plants[None]).all(axis=2).any(axis=1)
-        hardest = int(np.argmax(np.where(known, 0, fails)))
-        if fails[hardest] and not known[hardest]:
-            self.margins = self._margins(np.vstack([self.margins.plants, self.everywhere[hardest]]), searching=True)
+        """From now on the margins are looked at also on a plant that has each joint as it fails most of them."""
+        plants = self.model.plants
+        fails = np.sum([one.fails[0] for one in self.judging_margins.unrest(self.found.best[None]).values()], axis=0)
+        hard = plants[0].copy()
+        for joint in range(len(fails.T)):
+            own = joint_columns(joint)
+            known = (plants[:, None, own] == self.margins.plants[None, :, own]).all(axis=2).any(axis=1)
+            fails[known, joint] = 0
+            hard[own] = plants[np.argmax(fails[:, joint]), own]
+        if fails.any():
+            self.margins = self._margins(np.vstack([self.margins.plants, hard]), searching=True)
 
     def _run(self, stage: Stage, number: int, budget: int, journal: TuningJournal, tick: lockstep.Tick) -> None:
         """Spend a stage's evaluations of each joint."""

@@ -17,7 +17,7 @@ from greywhale.base.errors import UserError, require_within
 from greywhale.base.types import Floats
 from greywhale.files import parameter_file
 from greywhale.files.arm import content_of, load_arm
-from greywhale.identify import sampled_plants
+from greywhale.identify import loosen_gears, sampled_plants
 from greywhale.protocol.joints import require_same
 from greywhale.protocol.schema import Board
 from greywhale.protocol.table import ParameterTable
@@ -29,6 +29,8 @@ from greywhale.tune.model_edits import UNSEALED, doubt_edits
 from greywhale.tune.travel import Travel, travel_of
 
 SAMPLES = 8
+# By so many standard deviations the gears of the second plant are looser than the estimate's.
+LOOSER = 0.5
 MOST_SAMPLES = 1000  # every one is simulated for every controller that is tried
 
 
@@ -39,7 +41,8 @@ class Model:
     name: str
     arm: ArmParameters
     table: ParameterTable  # of the board that it is tuned for
-    plants: Floats = field(repr=False)  # (k, 60): the estimate, then arms drawn from its covariance; k = 1 without one
+    # (k, columns): the estimate, the same with looser gears, then arms drawn from its covariance; k = 1 without one.
+    plants: Floats = field(repr=False)
     doubts: tuple[str, ...]
     file: str
     digest: str  # SHA-256 of the file, hexadecimal
@@ -67,10 +70,10 @@ def load_model(
 ) -> Model:
     """Read a model.toml (or an arm.toml, or one of the shipped arms by name, with `force`) and judge it.
 
-    `samples` plants are drawn from its covariance with `seed`; the estimate is one of them. `params` is a file of
-    `greywhale params backup`: the table to tune for. Without it, that is the table with which the model's logs were
-    recorded. `arm` is the arm file to which the model must belong. Raises UserError with the gravest doubt; with
-    `force`, the model keeps all doubts instead.
+    `samples` plants are drawn from its covariance with `seed`; the estimate is one of them. One more has looser gears.
+    `params` is a file of `greywhale params backup`: the table to tune for. Without it, that is the table with which the
+    model's logs were recorded. `arm` is the arm file to which the model must belong. Raises UserError with the gravest
+    doubt; with `force`, the model keeps all doubts instead.
     """
     require_within("samples", samples, 1, MOST_SAMPLES)
     identified = load_arm(path)
@@ -81,7 +84,7 @@ def load_model(
     plants = plant_row(identified)[None]
     travel = None
     if facts is not None and facts.covariance is not None:
-        plants = sampled_plants(identified, samples, seed)
+        plants = np.insert(sampled_plants(identified, samples, seed), 1, loosen_gears(identified, LOOSER), axis=0)
         doubts += checks.doubt_precision(identified, table)
         travel = travel_of(identified, table)
     doubts += table_doubts

@@ -19,7 +19,7 @@ import numpy as np
 import numpy.typing as npt
 
 from greywhale.arm import ArmParameters
-from greywhale.arm.plants import column, columns
+from greywhale.arm.plants import columns
 from greywhale.base.types import Controllers, Floats, Integers
 from greywhale.files.trajectory import Trajectory
 from greywhale.motion.generate import minimum_jerk
@@ -305,19 +305,6 @@ def with_softer_teeth(plants: Floats) -> Floats:
     softer[:, columns("stiffness")] /= SOFTER
     softer[:, columns("mesh_damping")] /= LESS_DAMPED
     return softer
-
-
-def loosest_plant(plants: Floats) -> Floats:
-    """The estimate (columns,), with the widest gap and the softest, least damped teeth of any of the plants."""
-    loose: Floats = plants[0].copy()
-    for joint in range(JOINTS):
-        gap, stiffness, damping = (column(name, joint) for name in ("half_gap", "stiffness", "mesh_damping"))
-        toothed = plants[plants[:, stiffness] > 0.0]
-        if len(toothed):
-            loose[gap] = toothed[:, gap].max()
-            loose[stiffness] = toothed[:, stiffness].min()
-            loose[damping] = toothed[:, damping].min()
-    return loose
 
 
 def stops(low: Floats, high: Floats, rest_s: float) -> Trajectory:
