@@ -209,6 +209,21 @@ def test_the_benchs_own_arithmetic_has_the_last_word(
     assert (outcome.after[[0, 2, 3]] != outcome.before[[0, 2, 3]]).any(axis=1).all()
 
 
+def test_of_the_neighbours_of_a_kept_joint_only_the_one_that_disturbs_it_steps_back(
+    sure: Model, unjudged: None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def judge_costs(self: Any, controllers: np.ndarray, exact: bool = False) -> np.ndarray:
+        changed = (controllers != self.start).any(axis=2)
+        costs = np.where(changed, 0.5, 1.0)
+        costs[:, 0] = 1.0 + changed[:, 0] + (0.2 if exact else 0.005) * changed[:, 2]
+        return np.asarray(costs)
+
+    monkeypatch.setattr(DefaultMethod, "judge_costs", judge_costs)
+    outcome = run(sure, budget=30)
+    changed = (outcome.after != outcome.before).any(axis=1)
+    np.testing.assert_array_equal(changed, [False, True, False, True])
+
+
 def test_where_the_arm_itself_will_judge_unrest_on_the_model_counts_less(
     sure: Model, monkeypatch: pytest.MonkeyPatch
 ) -> None:

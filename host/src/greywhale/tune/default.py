@@ -23,7 +23,7 @@ import numpy as np
 from greywhale.arm.parameters import with_usual_noise
 from greywhale.arm.plants import joint_columns
 from greywhale.base.errors import counted
-from greywhale.base.types import Controllers, Floats
+from greywhale.base.types import Controllers, Flags, Floats
 from greywhale.optimise.optimiser import PACK
 from greywhale.optimise.relative import RelativeWolfWhale
 from greywhale.protocol.joints import unused
@@ -223,8 +223,8 @@ class DefaultMethod:
             worse = after_cost > np.where(changed, FAIR, FAIR_TO_KEPT) * before_cost
             if not self.task.on_trial:
                 worse |= self.standard.joints_short(margins, ~changed)
-            if not (worse & changed).any():  # a neighbour's doing
-                worse = np.full(len(after), worse.any())
+            if worse.any() and not (worse & changed).any():
+                worse = self._disturbing(after, worse, judge)
             if not (worse & changed).any():
                 return after, margins, before_cost, after_cost
             for joint in map(int, np.flatnonzero(worse & changed)):
@@ -232,15 +232,27 @@ class DefaultMethod:
                     others[joint] = self._next_best(first, contenders, joint, judge)
                 after[joint] = others[joint].pop(0)
 
+    def _disturbing(self, after: Controllers, worse: Flags, judge: Judge) -> Flags:
+        """Which joint's controller from before would serve those best that are worse, though they keep theirs (4,)."""
+        rows = np.repeat(after[None], len(after), axis=0)
+        places = np.arange(len(after))
+        rows[places, places] = self.start
+        costs = judge(rows)[:, worse].sum(axis=1)
+        costs[(after == self.start).all(axis=1)] = np.inf
+        chosen: Flags = (places == np.argmin(costs)) & np.isfinite(costs)
+        return chosen
+
     def _next_best(self, after: Controllers, contenders: Controllers, joint: int, judge: Judge) -> list[Controllers]:
-        """The rows that a joint may have in the place of its own, the best first, then the calmest and the one from
-        before.
+        """The rows that a joint may have in the place of its own: the best first, then those without integral, in which
+        little swings, and the one from before.
         """
         rows = np.repeat(after[None], len(contenders), axis=0)
         rows[:, joint] = contenders[:, joint]
         costs = judge(rows).sum(axis=1)
         order = [k for k in np.argsort(costs, kind="stable") if not np.array_equal(contenders[k, joint], after[joint])]
-        return [*(contenders[k, joint] for k in order[:SECOND_CHANCES]), contenders[-1, joint], self.start[joint]]
+        still = [lockstep.KEPT + number for number, (_, ki) in enumerate(CALMER) if ki == 0.0]
+        tried = list(dict.fromkeys([*order[:SECOND_CHANCES], *still]))
+        return [*(contenders[k, joint] for k in tried), self.start[joint]]
 
     def judge(self) -> Judgement:
         task, model = self.task, self.model
