@@ -36,10 +36,14 @@ def log_facts(role: str = "fit", improvement: float = 0.99, **more: Any) -> dict
 
 
 def facts_of(
-    arm: ArmParameters, deviation: float = 0.03, joints: tuple[int, ...] = tuple(range(JOINTS)), **changes: Any
+    arm: ArmParameters,
+    deviation: float = 0.03,
+    joints: tuple[int, ...] = tuple(range(JOINTS)),
+    searched: tuple[str, ...] = SEARCHED,
+    **changes: Any,
 ) -> dict[str, Any]:
     """A good [identification] of `arm` whose searched numbers have this relative standard deviation."""
-    space = Space.of(arm, SEARCHED, joints)
+    space = Space.of(arm, searched, joints)
     values = space.values(space.start())
     facts: dict[str, Any] = {
         "status": "complete",

@@ -10,15 +10,16 @@ from typing import Any
 import numpy as np
 import pytest
 
+from greywhale.arm.plants import columns
 from greywhale.base.errors import BAD_USAGE, FAILED, UserError
 from greywhale.files import parameter_file
 from greywhale.files.arm import default_arm, load_arm
 from greywhale.files.model import to_toml
-from greywhale.identify import sampled_plants
+from greywhale.identify import loosen_gears, sampled_plants
 from greywhale.protocol.table import ParameterTable
 from greywhale.simulate import default_controller, plant_row
-from greywhale.tune.model import load_model
-from tests.tune.models import facts_of, log_facts, write_model
+from greywhale.tune.model import LOOSER, load_model
+from tests.tune.models import SEARCHED, facts_of, log_facts, write_model
 
 
 def table(**changes: int) -> ParameterTable:
@@ -56,6 +57,13 @@ def test_plants_are_drawn_from_the_covariance_and_follow_from_the_seed(tmp_path:
     path = write_model(tmp_path / "model.toml")
     model = load_model(path, samples=5, seed=3)
     np.testing.assert_array_equal(np.delete(model.plants, 1, axis=0), sampled_plants(load_arm(path), 5, 3))
+
+
+def test_the_second_plant_has_looser_gears(tmp_path: Path) -> None:
+    path = write_model(tmp_path / "model.toml", searched=(*SEARCHED, "gap", "teeth"))
+    loose = load_model(path).plants[1]
+    np.testing.assert_array_equal(loose, loosen_gears(load_arm(path), LOOSER))
+    assert (loose[columns("half_gap")] > plant_row(load_arm(path))[columns("half_gap")]).all()
 
 
 def test_the_table_is_that_of_the_logs(tmp_path: Path) -> None:

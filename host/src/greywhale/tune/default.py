@@ -21,16 +21,15 @@ from typing import Any
 import numpy as np
 
 from greywhale.arm.parameters import with_usual_noise
-from greywhale.arm.plants import joint_columns
 from greywhale.base.errors import counted
 from greywhale.base.types import Controllers, Flags, Floats
 from greywhale.optimise.optimiser import PACK
 from greywhale.optimise.relative import RelativeWolfWhale
 from greywhale.protocol.joints import unused
 from greywhale.protocol.table import CONTROLLER_COLUMNS
-from greywhale.tune.judge.choose import FAIR, Judge, Remembering, choose
+from greywhale.tune.judge.choose import FAIR, Judge, Remembering, choose, next_best
 from greywhale.tune.judge.held_out import judge_held_out
-from greywhale.tune.judge.margins import MOVING, REST_LONG_S, Margin, Margins, penalty
+from greywhale.tune.judge.margins import MOVING, REST_LONG_S, Margin, Margins, compose_hard_plant, penalty
 from greywhale.tune.judge.standard import Standard
 from greywhale.tune.method import Costs, Judgement
 from greywhale.tune.model import Model
@@ -77,7 +76,6 @@ ON_TRIAL = 0.1
 # Shares of the best's Ku and Ki that compete in the last judgement: full voltage may shake gears, and an integral swing
 # in friction, that were quiet in the search.
 CALMER = ((1.0, 0.5), (1.0, 0.2), (1.0, 0.0), (0.7, 0.7), (0.7, 0.3), (0.7, 0.0), (0.5, 0.3), (0.5, 0.0), (0.35, 0.0))
-SECOND_CHANCES = 3
 KU, KI = (CONTROLLER_COLUMNS.index(name) for name in ("ku_mv", "ki"))
 
 
@@ -148,15 +146,9 @@ class DefaultMethod:
 
     def _add_hard_plant(self) -> None:
         """From now on the margins are looked at also on a plant that has each joint as it fails most of them."""
-        plants = self.model.plants
         fails = np.sum([one.fails[0] for one in self.judging_margins.unrest(self.found.best[None]).values()], axis=0)
-        hard = plants[0].copy()
-        for joint in range(len(fails.T)):
-            own = joint_columns(joint)
-            known = (plants[:, None, own] == self.margins.plants[None, :, own]).all(axis=2).any(axis=1)
-            fails[known, joint] = 0
-            hard[own] = plants[np.argmax(fails[:, joint]), own]
-        if fails.any():
+        hard = compose_hard_plant(self.model.plants, self.margins.plants, fails)
+        if hard is not None:
             self.margins = self._margins(np.vstack([self.margins.plants, hard]), searching=True)
 
     def _run(self, stage: Stage, number: int, budget: int, journal: TuningJournal, tick: lockstep.Tick) -> None:
@@ -229,7 +221,8 @@ class DefaultMethod:
                 return after, margins, before_cost, after_cost
             for joint in map(int, np.flatnonzero(worse & changed)):
                 if joint not in others:
-                    others[joint] = self._next_best(first, contenders, joint, judge)
+                    still = np.flatnonzero(contenders[:, joint, KI] == 0)
+                    others[joint] = [*next_best(first, contenders, joint, judge, still), self.start[joint]]
                 after[joint] = others[joint].pop(0)
 
     def _disturbing(self, after: Controllers, worse: Flags, judge: Judge) -> Flags:
@@ -241,18 +234,6 @@ class DefaultMethod:
         costs[(after == self.start).all(axis=1)] = np.inf
         chosen: Flags = (places == np.argmin(costs)) & np.isfinite(costs)
         return chosen
-
-    def _next_best(self, after: Controllers, contenders: Controllers, joint: int, judge: Judge) -> list[Controllers]:
-        """The rows that a joint may have in the place of its own: the best first, then those without integral, in which
-        little swings, and the one from before.
-        """
-        rows = np.repeat(after[None], len(contenders), axis=0)
-        rows[:, joint] = contenders[:, joint]
-        costs = judge(rows).sum(axis=1)
-        order = [k for k in np.argsort(costs, kind="stable") if not np.array_equal(contenders[k, joint], after[joint])]
-        still = [lockstep.KEPT + number for number, (_, ki) in enumerate(CALMER) if ki == 0.0]
-        tried = list(dict.fromkeys([*order[:SECOND_CHANCES], *still]))
-        return [*(contenders[k, joint] for k in tried), self.start[joint]]
 
     def judge(self) -> Judgement:
         task, model = self.task, self.model

@@ -18,6 +18,8 @@ ROUNDS = 3
 FAIR = 1.01
 # Another way is tried if together the joints gain less than this share of what each could gain alone.
 ENOUGH = 0.5
+# A joint that fails gets so many other candidates, the best first.
+SECOND_CHANCES = 3
 
 
 class Remembering:
@@ -73,6 +75,22 @@ def choose(start: Controllers, contenders: Controllers, judge: Judge) -> tuple[C
     # Once more: a joint may now accept a candidate that it could not accept among its old neighbours.
     chosen, cost = _build_up(chosen, cost, before, contenders, judge)
     return chosen, before, cost
+
+
+def next_best(
+    after: Controllers, contenders: Controllers, joint: int, judge: Judge, still: npt.NDArray[np.intp]
+) -> Controllers:
+    """The controllers (n, 13) that a joint of `after` (4, 13) may have in the place of its own.
+
+    The best of the contenders (k, 4, 13) come first, then those of the rows `still`, in which little swings.
+    """
+    rows = np.repeat(after[None], len(contenders), axis=0)
+    rows[:, joint] = contenders[:, joint]
+    costs = judge(rows).sum(axis=1)
+    order = [k for k in np.argsort(costs, kind="stable") if not np.array_equal(contenders[k, joint], after[joint])]
+    tried = list(dict.fromkeys([*order[:SECOND_CHANCES], *still]))
+    chosen: Controllers = contenders[tried, joint]
+    return chosen
 
 
 def is_fair(costs: Floats, before: Floats) -> npt.NDArray[np.bool_]:

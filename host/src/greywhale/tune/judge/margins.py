@@ -19,7 +19,7 @@ import numpy as np
 import numpy.typing as npt
 
 from greywhale.arm import ArmParameters
-from greywhale.arm.plants import columns
+from greywhale.arm.plants import columns, joint_columns
 from greywhale.base.types import Controllers, Floats, Integers
 from greywhale.files.trajectory import Trajectory
 from greywhale.motion.generate import minimum_jerk
@@ -305,6 +305,19 @@ def with_softer_teeth(plants: Floats) -> Floats:
     softer[:, columns("stiffness")] /= SOFTER
     softer[:, columns("mesh_damping")] /= LESS_DAMPED
     return softer
+
+
+def compose_hard_plant(plants: Floats, searched: Floats, fails: Integers) -> Floats | None:
+    """The first plant (columns,), but with each joint as it is where its controller fails most: `fails` is (plants, 4).
+
+    Joints as `searched` has them do not count. None where no other fails.
+    """
+    fails, hard = fails.copy(), plants[0].copy()
+    for joint in range(JOINTS):
+        own = joint_columns(joint)
+        fails[(plants[:, None, own] == searched[None, :, own]).all(axis=2).any(axis=1), joint] = 0
+        hard[own] = plants[np.argmax(fails[:, joint]), own]
+    return hard if fails.any() else None
 
 
 def stops(low: Floats, high: Floats, rest_s: float) -> Trajectory:
