@@ -188,6 +188,25 @@ def test_a_joint_whose_best_would_shake_its_gear_gets_less_voltage(
     assert outcome.after[1, KU] in [round(share * searched[0]) for share, _ in CALMER]
 
 
+def test_a_joint_whose_candidates_all_fall_short_is_searched_once_more(
+    sure: Model, unjudged: None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    known: set[bytes] = set()
+
+    def judge_costs(self: Any, controllers: np.ndarray, exact: bool = False) -> np.ndarray:
+        if not known:
+            known.update(row.tobytes() for row in controllers[:, 1])
+        changed = (controllers != self.start).any(axis=2)
+        costs = np.where(changed, 0.5, 1.0)
+        costs[changed[:, 1] & [row.tobytes() in known for row in controllers[:, 1]], 1] = 2.0
+        return np.asarray(costs)
+
+    monkeypatch.setattr(DefaultMethod, "judge_costs", judge_costs)
+    monkeypatch.setattr(default, "AGAIN", replace(default.AGAIN, share=0.5))
+    outcome = run(sure, budget=30)
+    assert outcome.after[1].tobytes() not in known
+
+
 @pytest.mark.slow
 def test_the_benchs_own_arithmetic_has_the_last_word(
     sure: Model, unjudged: None, monkeypatch: pytest.MonkeyPatch
@@ -233,7 +252,7 @@ def test_where_the_arm_itself_will_judge_unrest_on_the_model_counts_less(
     rows = sure.controllers[None]
     usual = DefaultMethod(task).judge_costs(rows)
     on_trial = DefaultMethod(replace(task, on_trial=True)).judge_costs(rows)
-    assert usual - on_trial == pytest.approx(default.UNFIT - default.ON_TRIAL)
+    assert usual - on_trial == pytest.approx(default.UNFIT + 1.0 - default.ON_TRIAL)
 
 
 def test_silent_potentiometers_get_the_noise_of_ordinary_ones(model: Model) -> None:

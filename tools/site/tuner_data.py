@@ -76,6 +76,7 @@ def tuner_data() -> dict[str, Any]:
         "shown": SHOWN,
         "rests": {
             "searching": _rests(model, margins.REST_S, 0, margins.SEARCH_BEYOND, swings.SEARCH_BAND_RAD),
+            "refining": _rests(model, margins.REST_LONG_S, 0, margins.SEARCH_BEYOND, swings.SEARCH_BAND_RAD),
             "judging": _rests(model, margins.REST_LONG_S, 1, 1.0, swings.LIMIT_CYCLE.band_rad),
         },
         "rattle": _rattle(),

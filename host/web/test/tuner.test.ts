@@ -28,7 +28,7 @@ const standard = new Standard(module, data, golden.before);
 
 test("every cost and the best controllers of a search have the bits of greywhale tune's", () => {
   const costs = new Costs(module, data, golden.before, standard.quietV);
-  const search = new Search(data.search, golden.before, module, (rows) => costs.of(rows));
+  const search = new Search(data.search, golden.before, module, (rows, refine) => costs.of(rows, refine));
   for (const _ of search.run());
   assert.deepEqual([search.best, search.curve], [golden.best, golden.curve]);
 });

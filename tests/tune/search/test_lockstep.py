@@ -68,6 +68,12 @@ def test_turns_leave_the_others_at_their_best() -> None:
         assert still in ([0, 2], [1, 3])
 
 
+def test_joints_of_no_group_keep_what_they_have() -> None:
+    found, _ = run(budget=20, groups=((1, 3),))
+    assert (found.best != BEFORE).any(axis=1).tolist() == [False, True, False, True]
+    assert found.evaluations == 21
+
+
 @pytest.mark.parametrize("method", ["gwo-woa-relative", "cma-es"])
 def test_a_narrow_stage_begins_around_its_start(method: str) -> None:
     hills = Hills()

@@ -11,7 +11,8 @@ const JOINTS = [0, 1, 2, 3];
 
 export class Costs {
   private readonly drills: readonly number[];
-  private readonly unrests: Unrests;
+  private readonly searching: Unrests;
+  private readonly refining: Unrests;
   private readonly before: readonly Errors[][]; // drills x joints
 
   /** Judges by what the controllers from before do; `quietV` is the ripple that each joint may have at rest. */
@@ -20,14 +21,15 @@ export class Costs {
     private readonly quietV: readonly number[],
   ) {
     this.drills = data.drills.map((drill) => module.addDrill(drill, drill.searching));
-    this.unrests = new Unrests(module, data, data.rests.searching);
+    this.searching = new Unrests(module, data, data.rests.searching);
+    this.refining = new Unrests(module, data, data.rests.refining);
     this.before = this.follow([before]).map((drill) => drill[0]!);
   }
 
-  /** Of each candidate and joint. */
-  of(candidates: readonly Controllers[]): number[][] {
+  /** Of each candidate and joint; `refine`: in longer rests, since an integral swings slowly. */
+  of(candidates: readonly Controllers[], refine = false): number[][] {
     const following = this.follow(candidates);
-    const unrest = this.unrests.of(candidates);
+    const unrest = (refine ? this.refining : this.searching).of(candidates);
     const importances = this.data.drills.reduce((sum, { importance }) => sum + importance, 0);
     return candidates.map((_, n) => JOINTS.map((joint) => {
       const total = this.data.drills.reduce((sum, drill, place) =>

@@ -78,7 +78,8 @@ export type TunerData = {
   readonly plant: readonly number[];
   readonly drills: readonly Drill[];
   readonly shown: number; // the drill that a person sees
-  readonly rests: { readonly searching: Rests; readonly judging: Rests };
+  /** Longer after the first stage of a search. */
+  readonly rests: { readonly searching: Rests; readonly refining: Rests; readonly judging: Rests };
   readonly rattle: {
     readonly sections: readonly number[]; readonly blocks: readonly number[]; readonly swing: number; readonly window: number;
   };

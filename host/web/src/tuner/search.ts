@@ -20,10 +20,11 @@ export class Search implements Found {
   cost: number[] = JOINTS.map(() => Infinity);
   evaluations = 0;
   readonly curve: [number, number[]][] = [];
+  private refines = false; // after the first stage
 
   constructor(
     private readonly how: SearchData, private readonly before: Controllers, private readonly math: Elementary,
-    private readonly costs: (candidates: readonly Controllers[]) => number[][],
+    private readonly costs: (candidates: readonly Controllers[], refine: boolean) => number[][],
   ) {
     this.best = [...before];
   }
@@ -34,6 +35,7 @@ export class Search implements Found {
     const { stages, budget, turns } = this.how;
     for (const [number, stage] of stages.entries()) {
       const left = budget - this.evaluations;
+      this.refines = number > 0;
       let share = number === stages.length - 1 ? left : Math.min(left, rint(stage.share * budget));
       if (number && share > turns.length) {
         yield this.tryAgain();
@@ -74,7 +76,7 @@ export class Search implements Found {
 
   /** Takes in candidates; of joint j the first counts[j] are new. */
   private take(rows: readonly Controllers[], counts: readonly number[], packs: readonly WolfWhale[] = []): Found {
-    const costs = this.costs(rows);
+    const costs = this.costs(rows, this.refines);
     this.evaluations += rows.length;
     for (const joint of JOINTS) {
       const told = costs.slice(0, counts[joint]).map((row) => row[joint]!);

@@ -17,7 +17,7 @@ export class Tuning {
   constructor(private readonly module: TunerModule, private readonly data: TunerData, private readonly before: Controllers) {
     this.standard = new Standard(module, data, before);
     const costs = new Costs(module, data, before, this.standard.quietV);
-    this.search = new Search(data.search, before, module, (rows) => costs.of(rows));
+    this.search = new Search(data.search, before, module, (rows, refine) => costs.of(rows, refine));
   }
 
   /** Searches, a batch at each step. */

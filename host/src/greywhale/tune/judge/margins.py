@@ -251,18 +251,18 @@ _FIRST_S = 0.2
 TRAVEL_PRICE = 0.5
 CHATTER_PRICE = 0.03
 FAIL_PRICE = 0.15
-TEETH_PRICE = 0.05  # of a failure with softer teeth: what no recording shows well is no reason to follow badly
+TEETH_PRICE = 0.08  # of a failure with softer teeth: what no recording shows well is no reason to follow badly
 RIPPLE_PRICE = 0.05
 LOUD_PRICE = 1.0
 LOST_PRICE = 10.0
 
 
-def penalty(found: dict[str, Unrest], quiet_v: Floats) -> Floats:
+def penalty(found: dict[str, Unrest], quiet_v: Floats, fail_price: float = FAIL_PRICE) -> Floats:
     """What candidates pay (n, 4), mostly for scenarios that fail; `quiet_v` (4,) is the ripple that is allowed."""
     share = found[AT_REST].ripple.mean(axis=1) / quiet_v
     total = RIPPLE_PRICE * share + LOUD_PRICE * np.maximum(share - SEARCH_RIPPLE, 0.0)
     for scenario, one in found.items():
-        fails = (TEETH_PRICE if scenario == TEETH else FAIL_PRICE) * one.fails
+        fails = (TEETH_PRICE if scenario == TEETH else fail_price) * one.fails
         excess = np.maximum(one.chatter / CHATTER_AT_REST_HZ - SEARCH_CHATTER, 0.0)
         price = TRAVEL_PRICE * one.travel + CHATTER_PRICE * excess + fails + LOST_PRICE * one.lost
         total = total + price.mean(axis=1)

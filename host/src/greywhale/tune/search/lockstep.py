@@ -107,7 +107,7 @@ def search_in_lockstep(
     """Spend `budget` evaluations a joint and leave the best in `found`; a `start` (4, 13) is in the first pack.
 
     The first pack lies all over the box, or around `start` with a standard deviation of `sigma` times the box. CMA-ES
-    has a pack of its own size.
+    has a pack of its own size. Joints of no group keep what they have in `found`.
     """
     points = np.empty((0, JOINTS, space.dimensions)) if start is None else space.points(start[None])
     packs: list[Optimiser] = []
@@ -115,7 +115,7 @@ def search_in_lockstep(
         for joint in range(JOINTS):
             source = np.random.default_rng([*seed, joint])
             packs.append(_begin(method, space, budget, source, points[:, joint], sigma, pack))
-        while not all(one.done for one in packs):
+        while not all(packs[joint].done for group in groups for joint in group):
             for group in groups:
                 if not all(packs[joint].done for joint in group):
                     _run_batch(space, evaluate, found, journal, stage, packs, group)
