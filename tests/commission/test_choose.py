@@ -19,7 +19,7 @@ def joints_of(trials: Trials) -> list[JointTrials]:
     joints = [JointTrials() for _ in range(4)]
     for trial in trials.done:
         for one, row, verdict in zip(joints, trial.rows, trial.verdicts, strict=True):
-            one.add(row, verdict, trial.name)
+            one.add(row, verdict)
     return joints
 
 
@@ -40,7 +40,7 @@ def test_a_combination_that_fails_on_the_arm_is_not_chosen(trials: Trials, rig: 
     play(trials, rig, stiffer(trials, [1], BETTER))
     joints = joints_of(trials)
     wild = stiffer(trials, [2], WILD)[2]
-    joints[2].add(wild, joints[1].ranked()[0].verdict, "lucky")
+    joints[2].add(wild, joints[1].ranked()[0].verdict)
     best = confirm(trials, joints, lambda: rig)  # type: ignore[arg-type, return-value]
     assert best.passed
     assert not np.array_equal(best.rows[2], wild)
@@ -56,7 +56,7 @@ def test_what_shakes_others_or_ends_the_motion_steps_back_alone(
     mild, strong = (stiffer(trials, [1, 2], factor) for factor in (1.5, BETTER))
     joints = joints_of(trials)
     for joint, rows, score in ((1, mild, 0.5), (1, strong, 0.2), (2, mild, 0.5)):
-        joints[joint].add(rows[joint], replace(before.verdicts[joint], score=score), "alone")
+        joints[joint].add(rows[joint], replace(before.verdicts[joint], score=score))
 
     def play(rig: ArmOnPort | None, rows: np.ndarray) -> Trial:
         verdicts = [replace(one, score=0.9) for one in before.verdicts]

@@ -95,6 +95,8 @@ def test_a_round_ends_where_more_trials_are_not_worth_their_time(
     outcome = commission(options(trials=3), lambda what, fraction, note="": steps.append((what, note)))
     trials = outcome.rounds[0].trials
     assert len(trials) == 3
+    book = outcome.trials.book
+    assert [book.get(f"after-trial-{number:02d}") is None for number in (2, 3)] == [False, True]
     beside = [errors_beside(outcome.predicted(trial, outcome.rounds[0]), trial) for trial in trials]
     assert [step for step in steps if "trial" in step[0]] == [
         (f"round 1, trial {number} of 3 at most: recording", note) for number, note in enumerate(["", *beside[:2]], 1)

@@ -12,11 +12,10 @@ Row = Integers  # (13,)
 
 @dataclass(frozen=True)
 class TriedController:
-    """A joint's controller (13,) and what the arm said about it; `trial` is where that was measured."""
+    """A joint's controller (13,) and what the arm said about it."""
 
     row: Row
     verdict: TrialVerdict
-    trial: str
 
 
 @dataclass
@@ -34,6 +33,6 @@ class JointTrials:
         """All that passed or can be borne, the best first."""
         return sorted((one for one in self.tried if one.verdict.bearable), key=lambda one: one.verdict.value)
 
-    def add(self, row: Row, verdict: TrialVerdict, trial: str) -> None:
+    def add(self, row: Row, verdict: TrialVerdict) -> None:
         """Note a judged controller."""
-        self.tried.append(TriedController(row.copy(), verdict, trial))
+        self.tried.append(TriedController(row.copy(), verdict))

@@ -145,7 +145,7 @@ class _Commissioning:
         rows = controllers_of(trials.table)
         self.joints = [JointTrials() for _ in range(JOINTS)]
         for one, row, verdict in zip(self.joints, rows, first.verdicts, strict=True):
-            one.add(row, verdict, first.name)
+            one.add(row, verdict)
         if options.model is not None:
             learn.refuse_other_arm(load_arm(options.model), str(options.model), first, trials.table)
 
@@ -226,10 +226,10 @@ class _Commissioning:
             self.tried = errors_beside(predict_trial(learnt.arm, trial, trials.check), trial)
             for one, row, verdict in zip(self.joints, rows, trial.verdicts, strict=True):
                 if verdict.known:
-                    one.add(row, verdict, trial.name)
+                    one.add(row, verdict)
             hoped.append(sum(one.best.verdict.share * one.best.verdict.value for one in self.joints))
             failed = np.array([verdict.known and not verdict.passed for verdict in trial.verdicts])
-            if not failed.any() or is_enough(hoped):
+            if not failed.any() or is_enough(hoped) or number == self.options.trials:
                 break
             self.on_model = self.on_model.corrected(trial)
             passed = np.array([verdict.passed for verdict in trial.verdicts])
