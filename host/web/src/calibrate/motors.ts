@@ -5,7 +5,7 @@ import { LinkError } from "../link/declared";
 
 const SHARES = [0.1, 0.17, 0.25, 0.35]; // of the supply, tried one after the other
 const LEAST_RAD = 0.02; // half of what lies between a pulse one way and one the other: less is no motion
-const WEAK_SHARE = 0.4; // of the others' way a volt: healthy motors of unlike joints are above 0.6
+const WEAK_SHARE = 0.5; // of the others' way a volt: healthy unlike joints are above 0.6, weak ones below 0.45
 const MUCH_SHARE = 0.2; // of the supply, if every motor needs it
 const OTHERS_SHARE = 2; // another joint that moves so many times farther has this motor
 
