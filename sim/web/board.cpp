@@ -64,10 +64,19 @@ void Board::convert(const Millivolts& millivolts, unsigned floating) {
   for (; converted_ < hal::web::conversions && sampled_us(converted_) < end_us; ++converted_) {
     const unsigned pot = (kFirstPot + converted_) % hal::pot_count;
     if (!(floating >> pot & 1u)) charge_ = millivolts[pot];
-    const double count = std::clamp(charge_ * 1024.0 / kReference, 0.0, 1023.0);
-    hal::web::convert(static_cast<std::uint8_t>(pot), static_cast<unsigned>(count));
+    hal::web::convert(static_cast<std::uint8_t>(pot), count());
+    if (converted_ + 1 == hal::web::conversions) probe(millivolts, floating);
   }
 }
+
+// After ground, the next pot.
+void Board::probe(const Millivolts& millivolts, unsigned floating) {
+  probed_ = (probed_ + 1) % hal::pot_count;
+  charge_ = floating >> probed_ & 1u ? 0.0 : millivolts[probed_];
+  hal::web::probe(static_cast<std::uint8_t>(probed_), count());
+}
+
+unsigned Board::count() const { return static_cast<unsigned>(std::clamp(charge_ * 1024.0 / kReference, 0.0, 1023.0)); }
 
 void Board::move_bytes() {
   for (unsigned left = kBytes; left && !to_board_.empty(); --left) {

@@ -32,6 +32,8 @@ class Board {
  private:
   void tick();
   void convert(const Millivolts& millivolts, unsigned floating);
+  void probe(const Millivolts& millivolts, unsigned floating);
+  unsigned count() const;  // of the charge, as the converter says it
   void move_bytes();
   void work();
 
@@ -39,6 +41,7 @@ class Board {
   unsigned starts_ = 0;
   unsigned slice_ = 0;      // of the tick
   unsigned converted_ = 0;  // in this tick
+  unsigned probed_ = 0;     // the last pot that was read after ground
   double charge_ = 0.0;     // mV on the sampling capacitor
   std::deque<std::uint8_t> to_board_;
   std::vector<std::uint8_t> said_;

@@ -19,6 +19,8 @@ REPORTED = {
     "hang, interrupts off": {"watchdog"},
     "bit of the running set flips": {"memory", "estop"},
     "supply sinks by 0.1 V a ms": {"none"},
+    "leader floats": {"pot_low", "speed"},
+    "follower floats": {"pot_low", "speed"},
     "motor dead": {"tracking", "runaway", "motors stayed on"},
     "motor reversed": {"runaway", "motors stayed on"},
     "follower pot reversed": {"runaway", "speed", "motors stayed on"},

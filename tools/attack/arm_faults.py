@@ -79,8 +79,13 @@ def _read_neighbour(arm: ArmOnBoard, joint: int) -> None:
     arm.pot_fault = fault
 
 
-def _float(arm: ArmOnBoard, joint: int) -> None:
-    arm.board.set_floating(1 << (4 + joint))
+def _float(follower: bool) -> Inject:
+    """The wiper's wire is off, and nothing pulls the pin down."""
+
+    def inject(arm: ArmOnBoard, joint: int) -> None:
+        arm.board.set_floating(1 << (joint + 4 * follower))
+
+    return inject
 
 
 def _reverse_motor(arm: ArmOnBoard, joint: int) -> None:
@@ -166,6 +171,7 @@ def faults() -> dict[str, Inject]:
         "supply sinks by 0.1 V a ms": _sink,
     }
     for side, follower in (("leader", False), ("follower", True)):
+        found[f"{side} floats"] = _float(follower)
         for state, rail in (("open", 0.0), ("shorted", 5000.0)):
             found[f"{side} {state}"] = _at(rail, follower)
             for pattern in CHATTER:
@@ -174,7 +180,6 @@ def faults() -> dict[str, Inject]:
         "motor dead": _cut_motor,
         "follower frozen": _freeze,
         "follower reads neighbour": _read_neighbour,
-        "follower floats": _float,
         "motor reversed": _reverse_motor,
         "follower pot reversed": _reverse_pot,
         "joint blocked": _block,

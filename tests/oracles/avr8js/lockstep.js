@@ -6,7 +6,8 @@ const fs = require("node:fs");
 const { Nano } = require("./nano.js");
 
 const sendAt = (tick) => 4500 + ((tick * 61) % 5000); // cycles after a tick, another phase each time
-// Conversion n samples near FIRST + EACH * n cycles after a tick. Voltages change half-way between two conversions.
+// Conversion n samples near FIRST + EACH * n cycles after a tick. Voltages change half-way between two conversions; until
+// the first of them they are those of the tick before.
 const FIRST = 2256, EACH = 416, CONVERSIONS = 32, CHANNELS = 8;
 
 const [hexFile, scenarioFile, voltsFile, count] = process.argv.slice(2);
@@ -23,10 +24,9 @@ let start = 0;
 
 nano.usart.onByteTransmit = (byte) => sent.push(byte);
 nano.adc.voltage = (channel) => {
-  if (tick < 0) return 2.5;
   const conversion = Math.floor((cpu.cycles - start - FIRST + EACH / 2) / EACH);
-  const place = Math.min(Math.max(conversion, 0), CONVERSIONS - 1);
-  return volts[(tick * CONVERSIONS + place) * CHANNELS + channel];
+  const place = tick * CONVERSIONS + Math.min(Math.max(conversion, -1), CONVERSIONS - 1);
+  return tick < 0 || place < 0 ? 2.5 : volts[place * CHANNELS + channel];
 };
 nano.onTick = () => {
   if (tick >= 0) outputs.push(nano.outputs());

@@ -38,7 +38,8 @@ class FreeRunningAdc extends avr.AVRADC {
 
   /** A conversion that starts at this cycle, which may be a few before the end of the instruction under way. */
   convert(input, start) {
-    const result = Math.floor((this.voltage(input.channel) / this.referenceVoltage) * 1024);
+    const volts = input.voltage ?? this.voltage(input.channel); // ground has its own
+    const result = Math.floor((volts / this.referenceVoltage) * 1024);
     const end = start + this.sampleCycles;
     this.pending = this.cpu.addClockEvent(() => this.complete(result, end), end - this.cpu.cycles);
   }

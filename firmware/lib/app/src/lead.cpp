@@ -1,4 +1,7 @@
 // See lead.h.
+#ifdef __AVR__
+#pragma GCC optimize("Os")  // between ticks there is time, and flash is short
+#endif
 #include "lead.h"
 
 #include <string.h>

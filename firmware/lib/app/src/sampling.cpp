@@ -6,6 +6,9 @@ namespace {
 
 constexpr uint16_t full_count = 1023;
 
+// Four counts: a joint that moves reads differently a little later, by less than that.
+constexpr uint8_t moves = 8;
+
 // Whether that changed anything.
 __attribute__((noinline)) bool calibrate(signal_chain::Pot& pot, const params::PotParameters& parameters) {
   const signal_chain::Pot was = pot;
@@ -57,6 +60,14 @@ bool Sampling::configure_joint(const params::Table& table, uint8_t joint, bool h
 void Sampling::tick(const uint16_t* sums, supervisor::Observation& seen) {
   follow_pots(sums, &signals_, &seen);
   primed_ = true;
+}
+
+bool Sampling::floats(hal::Probe probe) const {
+  if (probe.pot >= hal::pot_count || !(signals_.rails & tell_rails)) return false;
+  const JointSignals& joint = signals_.joint[probe.pot % hal::joint_count];
+  const signal_chain::Pot& pot = probe.pot < hal::joint_count ? joint.leader : joint.follower;
+  const auto usual = static_cast<uint8_t>(pot.filtered >> 8);
+  return probe.count + moves < usual - usual / 8;  // a wire that is off brings some charge along
 }
 
 void Sampling::prepare_low_passes() {

@@ -21,6 +21,8 @@ class Sampling {
   void prepare_low_passes();
   // Takes the sums of all pots, as hal::pot_sums() gives them, and writes the rails into `seen`.
   void tick(const uint16_t* sums, supervisor::Observation& seen);
+  // Whether an input has no wire: after ground it reads less than in its place among the others.
+  bool floats(hal::Probe probe) const;
   // From here to the next tick no reading counts: the distances are farther than two angles can be apart.
   void forget();
 

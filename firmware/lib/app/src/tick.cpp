@@ -146,6 +146,7 @@ bool Tick::follow_leader() { return scaling_.advance(drivers_on_, clutch_pressed
 bool Tick::finish() {
   if (finished_) return false;
   finished_ = true;
+  look_at_probe();
   look_at_joint();
   prepare_next();
   return true;
@@ -156,6 +157,15 @@ __attribute__((noinline)) void Tick::prepare_next() {
   set_limit();
   if (short_stop_ != 0) --short_stop_;
   show(supervisor_.state(), static_cast<uint16_t>(number_));
+}
+
+// A wire that is off counts as a reading at the lower rail: each pot comes once in eight ticks, and the rails tell what
+// is there more often than once in sixteen.
+inline void Tick::look_at_probe() {
+  const hal::Probe probe = hal::last_probe();
+  if (!sampling_.floats(probe)) return;
+  const auto pot = static_cast<uint8_t>((1u << probe.pot) & sampling_.pots_in_use());
+  supervisor_.note_rails({pot, 0, false, false});
 }
 
 // What a joint may get until its next look. One that does not move is pushed with half as much again as starts it. One

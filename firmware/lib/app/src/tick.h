@@ -79,6 +79,7 @@ class Tick {
   uint16_t most_mv(uint8_t joint, int16_t gravity_mv) const;
   void set_limit();
   void note_rails();
+  void look_at_probe();
   void look_at_joint();
   void begin_safe_set();
   void prepare_next();

@@ -39,6 +39,14 @@ uint16_t tick_age_us();  // time since the timer started this tick, resolution 4
 const uint16_t* pot_sums();
 void release_pots();
 
+// An input without a wire keeps what the converter's capacitor held, so it reads like the pot before it. Each pot in
+// turn is therefore read once more after ground, which empties the capacitor.
+struct Probe {
+  uint8_t pot;    // the next one in each tick; pot_count: none has been read yet
+  uint8_t count;  // the upper 8 of 10 bits
+};
+Probe last_probe();
+
 // --- Motor drivers: the signals that each motor's driver takes. The numbers are those of the parameter `driver`.
 enum class Driver : uint8_t {
   pwm_direction,

@@ -136,7 +136,7 @@ void Supervisor::raise(Fault fault, uint8_t where) {
   fault_where_ = where;
 }
 
-Reply Supervisor::enable(uint16_t lease_ms, const Observation& seen, const Distances& distances) {
+__attribute__((cold)) Reply Supervisor::enable(uint16_t lease_ms, const Observation& seen, const Distances& distances) {
   if (motors_on()) {
     lease_ = lease_ms;
     return {NackCode::none, nowhere, 0};
@@ -170,7 +170,7 @@ void Supervisor::renew(uint16_t lease_ms) {
   if (motors_on()) lease_ = lease_ms;
 }
 
-Reply Supervisor::clear_fault(const Observation& seen, const Distances& distances) {
+__attribute__((cold)) Reply Supervisor::clear_fault(const Observation& seen, const Distances& distances) {
   if (state_ == State::boot) return {NackCode::booting, nowhere, 0};
   if (state_ != State::fault) return {NackCode::none, nowhere, 0};
   if (seen.estop) return {NackCode::estop_pressed, nowhere, 0};

@@ -48,6 +48,7 @@ struct Reply {
 
 class Supervisor {
  public:
+  constexpr Supervisor() : boot_left_(0), params_ok_(false) {}
   // A reset by the watchdog is a fault that stands from the start. So is a set that need not be the one that ran
   // before.
   void begin(bool after_watchdog, bool params_ok);
@@ -104,8 +105,8 @@ class Supervisor {
   Unrest unrest_;
   Motion motion_;
   uint16_t lease_ = 0;  // ticks, 0 = until stop; it stays after a fault, for restart()
-  uint8_t boot_left_ = 0;
-  bool params_ok_ = false;
+  uint8_t boot_left_ : 7;
+  bool params_ok_ : 1;
   State state_ = State::boot;
   StopReason stop_reason_ = StopReason::none;
   Fault fault_ = Fault::none;

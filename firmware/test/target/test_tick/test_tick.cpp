@@ -133,6 +133,32 @@ void margin() {
   WITHIN("the_last_conversion_is_in_20_us_before_the_tick_at_most", latest, 960, 980);
 }
 
+// The pot that is known to have been read after ground when a tick that releases its sums so late has ended.
+uint8_t probed(uint16_t release_us) {
+  wait_for_tick();
+  hal::tick_begin();
+  while (hal::tick_age_us() < release_us) {
+  }
+  hal::release_pots();
+  hal::tick_end();
+  while (hal::tick_age_us() < 200) {
+  }
+  return hal::last_probe().pot;
+}
+
+void probes() {
+  catch_up();
+  uint8_t pots = 0;
+  for (uint8_t i = 0; i < 8; ++i) pots = static_cast<uint8_t>(pots | (1 << probed(40)));
+  EQUAL("each_pot_is_read_after_ground_in_eight_ticks", pots, 255);
+  const uint8_t last = probed(40);
+  EQUAL("not_before_ground_has_been_read", probed(16), last);
+  EQUAL("nor_once_the_chain_is_near", probed(120), last);
+  const Next next = next_tick();
+  EQUAL("the_chain_is_as_ever", next.late, false);
+  EQUAL("and_has_its_samples", next.fresh, true);
+}
+
 void overrun() {
   catch_up();
   wait_for_tick();
@@ -172,6 +198,7 @@ void setup() {
   period();
   margin();
   broken_chain();
+  probes();
   overrun();
   report::end();
 }

@@ -24,6 +24,7 @@
 // Prescaler 32: an ADC clock of 500 kHz. A free-running conversion takes exactly 13 ADC clocks (416 cycles), however
 // late its interrupt is, so the chain takes 13,312 of a tick's 16,000 cycles.
 #define ADC_SINGLE ((1 << ADEN) | (1 << ADIE) | (1 << ADPS2) | (1 << ADPS0))
+#define ADC_ONCE ((1 << ADEN) | (1 << ADSC) | (1 << ADPS2) | (1 << ADPS0))
 #define ADC_CHAIN (ADC_SINGLE | (1 << ADATE) | (1 << ADSC) | (1 << ADIF))
 
 #ifndef __ASSEMBLER__

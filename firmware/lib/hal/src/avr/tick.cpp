@@ -16,15 +16,27 @@ static_assert(FIRST_POT == pot_count - joint_count, "a round ends with the leade
 
 constexpr uint8_t channel(uint8_t n) { return static_cast<uint8_t>((1 << REFS0) | (n & 7)); }  // reference AVcc
 
+// The converter's own inputs at 0 V.
+#ifdef MUX4
+constexpr uint8_t ground = (1 << REFS0) | 0x1f;
+#else
+constexpr uint8_t ground = (1 << REFS0) | 0x0f;
+#endif
+
 // When the chain starts, in steps of 4 us after the tick: as late as is safe, so that the next tick gets young
 // readings. The chain takes 834 us; other interrupts may delay its start and its last conversion by 9 us each.
 constexpr uint8_t chain_start = 33;
+
+// Ground is read from the tick on, and then a pot until the chain starts. Both take 26 us.
+constexpr uint8_t latest_probe = chain_start - 10;
 
 BEHIND_RINGS volatile uint8_t filling =
     0;                                   // the set of sums to which the interrupt adds; the main loop has the other one
 BEHIND_RINGS volatile uint8_t full = 0;  // the main loop's set holds sums that it has not released
 BEHIND_RINGS volatile uint8_t running = 0;  // a tick has started and tick_end() has not been called
 BEHIND_RINGS volatile uint8_t late = 0;
+BEHIND_RINGS volatile uint8_t probed = 0;  // the pot that was read last after ground
+BEHIND_RINGS volatile uint8_t probe_count = 0;
 
 // After so many ticks that nobody has begun, the tick's interrupt starts the program anew. It so forestalls the
 // watchdog (13 ms at least: its clock is not the processor's), because not every bootloader comes back from a
@@ -42,9 +54,11 @@ uint16_t age_with(uint8_t ticks, uint8_t count) { return static_cast<uint16_t>(t
 }  // namespace internal
 
 ISR(TIMER0_COMPA_vect) {
+  ADMUX = ground;
   if (CONVERSION == CHAIN_END && !full) {
     filling = filling ^ 1;
     full = 1;
+    ADCSRA = ADC_ONCE;
   } else {
     late = 1;
   }
@@ -63,13 +77,19 @@ ISR(TIMER0_COMPA_vect) {
 ISR(TIMER0_COMPB_vect) {
   if (CONVERSION != CHAIN_END) {
     ADCSRA = 0;
-    ADMUX = channel(FIRST_POT);
+    ADMUX = ground;
   }
-  ADCSRA = ADC_CHAIN;  // the last interrupt of the chain before has chosen the channel
+  const uint8_t pot = ADMUX;
+  ADMUX = channel(FIRST_POT);
+  ADCSRA = ADC_CHAIN;
   CONVERSION = CHAIN_START;
   SUM_POSITION = static_cast<uint8_t>(reinterpret_cast<uint16_t>(&hal_sums[filling ? 1 : 0][FIRST_POT]));
-  __builtin_avr_delay_cycles(
-      16);  // conversion 1's channel may be set one ADC clock (32 cycles) after the start, not before
+  if (pot != ground) {
+    probe_count = static_cast<uint8_t>(ADC / 4);
+    probed = pot % pot_count;
+  }
+  // Conversion 1's channel may be set one ADC clock (32 cycles) after the start, not before.
+  __builtin_avr_delay_cycles(12);
   ADMUX = channel(FIRST_POT + 1);
 }
 
@@ -86,9 +106,10 @@ void start_tick() {
   TIMSK0 = (1 << OCIE0A) | (1 << OCIE0B);
 
   CONVERSION = CHAIN_END;
+  probed = pot_count;  // none yet
+  ADMUX = ground;
   DIDR0 = 0xff;  // no digital inputs on the pots
   ADCSRB = 0;    // channels 0..7, free-running
-  ADMUX = channel(FIRST_POT);
   ADCSRA = ADC_SINGLE | (1 << ADIF);
 }
 
@@ -120,7 +141,20 @@ const uint16_t* pot_sums() {
   return sums;
 }
 
-void release_pots() { full = 0; }
+// The tick has had its sums for some time: ground has been read, unless the tick is late.
+void release_pots() {
+  full = 0;
+  if (TCNT0 > latest_probe || CONVERSION != CHAIN_END || (ADCSRA & (1 << ADSC)) != 0) return;
+  ADMUX = channel(static_cast<uint8_t>(probed + 1));
+  ADCSRA = ADC_ONCE;
+}
+
+Probe last_probe() {
+  cli();
+  const Probe probe = {probed, probe_count};
+  sei();
+  return probe;
+}
 
 }  // namespace hal
 #endif  // __AVR__

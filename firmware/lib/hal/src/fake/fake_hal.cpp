@@ -53,6 +53,7 @@ const std::uint16_t* pot_sums() {
 }
 
 void release_pots() {}
+Probe last_probe() { return fake::board.probe; }
 
 bool has_driver(Driver driver) { return driver <= fake::board.last_driver; }
 void choose_driver(Driver driver) { fake::board.driver = driver; }

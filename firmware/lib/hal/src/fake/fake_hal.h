@@ -24,6 +24,7 @@ struct FakeBoard {
   std::uint8_t elapsed = 1;  // of the next tick
   bool late = false;         // the next tick finds the last one unfinished
   bool samples_ready = true;
+  Probe probe = {pot_count, 0};
   bool estop_low = false;
   bool clutch_low = false;
   Driver last_driver = Driver::two_pwm_high;  // that it has pins for

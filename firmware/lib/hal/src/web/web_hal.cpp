@@ -38,6 +38,7 @@ struct Board {
   std::array<std::uint16_t, pot_count> filling = {}, sums = {};
   unsigned converted = 0;
   bool full = false;
+  Probe probe = {pot_count, 0};
   bool late = false;
   Driver driver = Driver::pwm_direction;
   bool drivers = false;
@@ -94,6 +95,8 @@ void convert(std::uint8_t pot, unsigned count) {
   board.filling.at(pot) = static_cast<std::uint16_t>(board.filling.at(pot) + count + mark);
   ++board.converted;
 }
+
+void probe(std::uint8_t pot, unsigned count) { board.probe = {pot, static_cast<std::uint8_t>(count / 4)}; }
 
 void press_estop(bool pressed) { estop_pressed = pressed; }
 
@@ -157,6 +160,7 @@ std::uint16_t tick_age_us() { return board.age_us; }
 
 const std::uint16_t* pot_sums() { return board.full ? board.sums.data() : nullptr; }
 void release_pots() { board.full = false; }
+Probe last_probe() { return board.probe; }
 
 bool has_driver(Driver driver) { return driver <= Driver::two_pwm_high; }
 void choose_driver(Driver driver) { board.driver = driver; }
