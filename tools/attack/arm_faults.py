@@ -30,11 +30,11 @@ FLOOD_BYTES = 20  # in each slice of 250 us: 80 a millisecond
 
 @dataclass(frozen=True)
 class Trial:
-    """Until the motors went off (`off_ms` None: never) the true error had grown by at most `grown_rad`, and the
-    follower alone had gone `gone_rad`."""
+    """Until the motors went off (`off_ms` None: never) the follower had gone `gone_rad`, and `wrong_rad` of it had made
+    the true error grow: where it stands and the person leads away, it does not run."""
 
     off_ms: float | None
-    grown_rad: float
+    wrong_rad: float
     gone_rad: float
     fault: str
     where: int
@@ -212,7 +212,7 @@ def begin(arm: ArmOnBoard) -> None:
 def suffer(arm: ArmOnBoard, inject: Inject, joint: int) -> Trial:
     """From the fault to the motors off; the arm can be used again."""
     before = abs(arm.true_error[joint])
-    begun, place, grown, gone = arm.board.cycle, arm.angles[joint], 0.0, 0.0
+    begun, place, wrong, gone = arm.board.cycle, arm.angles[joint], 0.0, 0.0
     inject(arm, joint)
     off_ms = None
     for _ in range(round(PATIENCE_S / SLICE_S)):
@@ -220,9 +220,9 @@ def suffer(arm: ArmOnBoard, inject: Inject, joint: int) -> Trial:
         if not arm.motors_on:
             off_ms = (arm.board.cycle - begun) / CYCLES_PER_TICK
             break
-        grown = max(grown, abs(arm.true_error[joint]) - before)
-        gone = max(gone, abs(arm.angles[joint] - place))
+        way = abs(arm.angles[joint] - place)
+        wrong, gone = max(wrong, min(way, abs(arm.true_error[joint]) - before)), max(gone, way)
     arm.pot_fault = None
     arm.board.set_supply(5000)
     status = arm.status()
-    return Trial(off_ms, float(grown), float(gone), status.fault.key, status.fault_where)
+    return Trial(off_ms, float(wrong), float(gone), status.fault.key, status.fault_where)

@@ -28,9 +28,9 @@ SLOWER_MS = {
     "leader floats": 45.0,  # one pot in each tick is read after ground
     "follower floats": 45.0,
 } | {f"{side} {state} 2 of 10 ms": 20.0 for side in ("leader", "follower") for state in ("open", "shorted")}
-# Some show only once the person has moved that joint. Then a way counts and not the time: of the true error where a
-# potentiometer lies, of the follower where a motor does not obey.
-BY_ERROR = {"follower frozen", "follower reads neighbour"}
+# Some show only once the person has moved that joint. Then a way counts and not the time: of the follower, and
+# where a potentiometer lies only what makes the true error grow.
+BY_WRONG_WAY = {"follower frozen", "follower reads neighbour"}
 BY_WAY = {"motor dead", "motor reversed", "follower pot reversed", "joint blocked"}
 FARTHEST_RAD = 0.5
 # What this costs depends on what the board knows of the arm: a row without and a row with the numbers of `tune`.
@@ -38,8 +38,8 @@ BY_TRAVEL = {"follower frozen"}
 
 
 def is_violation(name: str, trial: Trial) -> bool:
-    if name in BY_ERROR:
-        return trial.grown_rad > FARTHEST_RAD
+    if name in BY_WRONG_WAY:
+        return trial.wrong_rad > FARTHEST_RAD
     if name in BY_WAY:
         return trial.gone_rad > FARTHEST_RAD
     return trial.off_ms is None or trial.off_ms > SLOWER_MS.get(name, AT_ONCE_MS)
@@ -47,7 +47,7 @@ def is_violation(name: str, trial: Trial) -> bool:
 
 def count(board: str, name: str, trial: Trial, limit: str = "") -> Row:
     seen = trial.fault if trial.off_ms is not None else "motors stayed on"
-    worst = {"rad": round(trial.gone_rad if name in BY_WAY else trial.grown_rad, 3)} | (
+    worst = {"rad": round(trial.gone_rad if name in BY_WAY else trial.wrong_rad, 3)} | (
         {} if trial.off_ms is None else {"ms": round(trial.off_ms, 2)}
     )
     return Row(f"{board}: {name}{limit}", 1, int(is_violation(name, trial)), {seen: 1}, worst)
@@ -91,15 +91,14 @@ PART = Part(
     "faults",
     "From a fault to the motors off",
     f"""The real images on both simulated boards with the default arm, a person's motion and the paper's controllers
-        before and after tuning, those with the numbers of travel that `tune` works out for
-        this arm. At {MOMENTS:,} random
-        moments of a run, and of a tick, each fault begins. The motors must be off within {AT_ONCE_MS:g} ms; within
-        {LEASE_MS + 2} ms for the lease, 20 ms for a hang (the watchdog's time) and for a wire that touches only 2 ms in
-        10, 45 ms for an input that floats, 30 ms for a flood, 24 ms for a supply that sinks (the brown-out detector
-        acts after 23), 103 ms for a flipped bit. Some faults show only once the person moves that joint. Then a way
-        counts, at most {FARTHEST_RAD} rad: of the follower where a motor does not obey (dead, reversed, blocked) or a
-        potentiometer turns the other way, and by which the true error has grown where one lies. `ms` is the longest
-        time, `rad` the greatest such way.""",
+        before and after tuning, those with the numbers of travel that `tune` works out for this arm. At {MOMENTS:,}
+        random moments of a run, and of a tick, each fault begins. The motors must be off within {AT_ONCE_MS:g} ms;
+        within {LEASE_MS + 2} ms for the lease, 20 ms for a hang (the watchdog's time) and for a wire that touches
+        only 2 ms in 10, 45 ms for an input that floats, 30 ms for a flood, 24 ms for a supply that sinks (the
+        brown-out detector acts after 23), 103 ms for a flipped bit. Some faults show only once the person moves that
+        joint. Then a way counts, at most {FARTHEST_RAD} rad: of the follower where a motor does not obey (dead,
+        reversed, blocked) or a potentiometer turns the other way, and that part of it by which the true error has
+        grown where one lies. `ms` is the longest time, `rad` the greatest such way.""",
     (
         "firmware/lib",
         "firmware/src",
