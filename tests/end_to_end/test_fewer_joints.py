@@ -94,7 +94,7 @@ def test_two_joints_on_a_nano_from_the_box_to_a_following_arm(
         )  # fmt: skip
         assert {one["name"].partition(".")[0] for one in told["parameter"]} <= {"joint0", "joint2", "arm"}
         assert told["board"] == "nano328"
-        assert told["log"][1]["improvement"] > 0.9
+        assert told["log"][1]["improvement"] > 0.8, "a short search on a short log"
         assert not any("joint 1" in sentence or "joint 3" in sentence for sentence in told["not_identified"])
         assert load_model(Path("model.toml")).table.board is Board.NANO328
         told = ask(
