@@ -9,6 +9,7 @@ import pytest
 
 from greywhale.base.errors import UserError
 from greywhale.board.record import LEASE_MS, record, record_led
+from greywhale.board.stream import stream
 from greywhale.files.log import read_log
 from greywhale.files.trajectory import Trajectory
 from greywhale.protocol import schema
@@ -68,6 +69,18 @@ def test_a_motion_that_is_too_fast_never_starts_a_motor(tmp_path: Path) -> None:
         record_led(device, tmp_path / "log.csv", quick)
     assert board.asked(schema.LeadRequest) == 0
     assert not list(tmp_path.iterdir())
+
+
+def test_all_samples_that_waited_while_this_host_stood_still_renew_the_lease_once() -> None:
+    with served() as (board, device), device.enabled(LEASE_MS):
+        received = stream(device, 1)
+        for _ in range(200):
+            next(received)
+        board.wait(0.4)
+        renewals = board.asked(schema.RenewRequest)
+        for _ in range(400):
+            next(received)
+        assert board.asked(schema.RenewRequest) == renewals + 1
 
 
 def test_following_is_recorded_from_the_end_of_the_soft_start(out: Path) -> None:

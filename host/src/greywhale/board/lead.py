@@ -1,7 +1,9 @@
 """Leads a board along a motion.
 
 Control points go out ahead of their time. A lost point is sent again. The pace falls when a follower does not keep up.
-The board's own ticks time everything, as in `stream`: a simulated board may live faster than this machine.
+The board's own ticks time everything, as in `stream`: a simulated board may live faster than this machine. What is sent
+again waits for this machine's clock as well: after a pause it finds hundreds of ticks at once, and so many points would
+flood the board.
 """
 
 from __future__ import annotations
@@ -108,7 +110,7 @@ class Leading:
         self._points: list[tuple[int, int, int, int]] = []
         self._sent = self._taken = 0  # points; self._points[self._taken:] are not known to have arrived
         self._waiting = self._heard = 0  # points that the board had to play, and the tick at which it said so
-        self._since = 0  # tick of the last progress
+        self._since, self._since_s = 0, 0.0  # tick and time of the last progress
         self._answer: schema.LeadPointReply | None = None
         self._place, self._pace, self._wanted = 0.0, 1.0, 1.0
         self._last_tick = 0
@@ -140,12 +142,13 @@ class Leading:
         self._resting = sample.state is not schema.State.FOLLOWING
         self._hear(tick)
         self._watch(sample)
-        if self._taken < self._sent and tick - self._since > _PATIENCE_TICKS:
-            self._sent, self._since = self._taken, tick
+        if self._taken < self._sent and self._waited(tick, _PATIENCE_TICKS):
+            self._sent = self._taken
+            self._note_progress(tick)
         room = min(_AT_ONCE, ROOM - max(0, self._points_left(tick)) - (self._sent - self._taken))
         while room > 0 and self._make_points(self._sent + 1):
             if self._sent == self._taken:
-                self._since = tick
+                self._note_progress(tick)
             self._device.lead_point((self._first + self._sent) % 256, self._points[self._sent])
             self._sent += 1
             room -= 1
@@ -153,6 +156,13 @@ class Leading:
     def _points_left(self, tick: int) -> int:
         """How many points the board has yet to play, by its last answer and the time since."""
         return self._waiting - (tick - self._heard) // POINT_TICKS
+
+    def _note_progress(self, tick: int) -> None:
+        self._since, self._since_s = tick, self._device.clock()
+
+    def _waited(self, tick: int, ticks: int) -> bool:
+        """Whether the last progress is so long ago, by the board and by this machine."""
+        return tick - self._since > ticks and 1000 * (self._device.clock() - self._since_s) > ticks
 
     def _hear(self, tick: int) -> None:
         try:
@@ -170,9 +180,10 @@ class Leading:
         if answer.waiting <= 1 and self._taken and not self._made_all:
             self.starved += 1
         if taken > self._taken:
-            self._since = tick
-        elif self._sent > taken and tick - self._since > _RETRY_TICKS:
-            self._sent, self._since = taken, tick
+            self._note_progress(tick)
+        elif self._sent > taken and self._waited(tick, _RETRY_TICKS):
+            self._sent = taken
+            self._note_progress(tick)
         self._taken, self._waiting, self._heard = taken, answer.waiting, tick
 
     def _watch(self, sample: schema.Sample) -> None:

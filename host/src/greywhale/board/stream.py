@@ -1,7 +1,8 @@
 """The board's samples as they come. The board's own ticks count the gaps, and the lease of the motors is kept alive.
 
 The lease is renewed by the time in the samples, not by this machine's clock: a simulated board may live many times
-faster than real time, but never runs ahead of samples that nobody has read.
+faster than real time, but never runs ahead of samples that nobody has read. It is renewed once for all samples that
+came together: after a pause there are hundreds.
 """
 
 from __future__ import annotations
@@ -42,7 +43,8 @@ def stream(device: Device, every: int) -> Iterator[Received]:
 def _samples(device: Device, every: int) -> Iterator[Received]:
     silence_s = max(_SILENCE_S, 5 * every / 1000)
     last: int | None = None
-    elapsed = renewed = 0
+    elapsed = 0
+    renewed: int | None = None
     heard = looked = device.clock()
     while True:
         samples = device.samples()
@@ -52,6 +54,12 @@ def _samples(device: Device, every: int) -> Iterator[Received]:
         looked = now
         if not samples and now > heard + silence_s:
             raise _silence(device, last, silence_s)
+        if samples:
+            newest = samples[-1].tick
+            renewed = samples[0].tick if renewed is None else renewed
+            if device.lease_ms and (newest - renewed) % _TICKS >= device.lease_ms // _RENEWALS_PER_LEASE:
+                device.renew()
+                renewed = newest
         for sample in samples:
             step = every if last is None else (sample.tick - last) % _TICKS
             if step == 0:
@@ -69,9 +77,6 @@ def _samples(device: Device, every: int) -> Iterator[Received]:
             lost = max(0, round(step / every) - 1) if last is not None else 0
             elapsed += step if last is not None else 0
             last = sample.tick
-            if device.lease_ms and elapsed - renewed >= device.lease_ms // _RENEWALS_PER_LEASE:
-                device.renew()
-                renewed = elapsed
             yield Received(sample, elapsed, lost)
 
 

@@ -49,6 +49,9 @@ class Board:
             self._answer = self._to_host.popleft()[1]
         return self._answer
 
+    def clock(self) -> float:
+        return self.tick / 1000
+
     def live(self) -> None:
         """A tick: take what has arrived, play a point every 16 ticks."""
         self.tick += 1
@@ -129,6 +132,20 @@ def test_the_motion_begins_when_the_soft_start_is_over() -> None:
         board.live()
         leading.keep_ahead(board.tick, sample(board.tick))
     assert not np.allclose(board.played[-1], board.played[0])
+
+
+def test_a_host_that_stood_still_sends_no_more_than_the_board_can_receive() -> None:
+    board = Board()
+    leading = Leading(cast(Device, board), BEGUN, PLAN, tracking_limit=0.9)
+    for _ in range(6):
+        waiting = []
+        for _ in range(350):
+            board.live()
+            waiting.append(board.tick)
+        sent = board.sent
+        for tick in waiting:
+            leading.keep_ahead(tick, sample(tick))
+        assert board.sent - sent <= ROOM
 
 
 def test_a_follower_that_lags_slows_the_motion_and_stops_it_before_the_fault() -> None:
