@@ -79,6 +79,16 @@ def _read_neighbour(arm: ArmOnBoard, joint: int) -> None:
     arm.pot_fault = fault
 
 
+def _touch_neighbour(arm: ArmOnBoard, joint: int) -> None:
+    """The wires of two wipers touch: both inputs read the mean, as with two equal potentiometers near their middle."""
+    both = [4 + joint, 4 + (joint + int(arm.random.integers(1, 4))) % 4]
+
+    def fault(volts: Floats, since: float) -> None:
+        volts[both] = volts[both].mean()
+
+    arm.pot_fault = fault
+
+
 def _float(follower: bool) -> Inject:
     """The wiper's wire is off, and nothing pulls the pin down."""
 
@@ -180,6 +190,7 @@ def faults() -> dict[str, Inject]:
         "motor dead": _cut_motor,
         "follower frozen": _freeze,
         "follower reads neighbour": _read_neighbour,
+        "follower touches neighbour": _touch_neighbour,
         "motor reversed": _reverse_motor,
         "follower pot reversed": _reverse_pot,
         "joint blocked": _block,

@@ -17,7 +17,9 @@ For whoever asks what can go wrong, and how often. {result} Every
 figure on this page was counted by `make attack` on the code whose digest stands below its table. A small share of the
 same attacks runs in every `make test`.
 
-A violation is a trial that broke what the section says must hold. `min` are the minutes of one core that a part took.
+A violation is a trial that broke what the section says must hold. The firmware's page tells
+[why a lie of a potentiometer is not always found](firmware.md#how-a-follower-must-move). `min` are the minutes of one
+core that a part took.
 """
 
 FAULTS_HEAD = """## The faults and how soon the motors are off

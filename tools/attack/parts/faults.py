@@ -30,7 +30,7 @@ SLOWER_MS = {
 } | {f"{side} {state} 2 of 10 ms": 20.0 for side in ("leader", "follower") for state in ("open", "shorted")}
 # Some show only once the person has moved that joint. Then a way counts and not the time: of the follower, and
 # where a potentiometer lies only what makes the true error grow.
-BY_WRONG_WAY = {"follower frozen", "follower reads neighbour"}
+BY_WRONG_WAY = {"follower frozen", "follower reads neighbour", "follower touches neighbour"}
 BY_WAY = {"motor dead", "motor reversed", "follower pot reversed", "joint blocked"}
 FARTHEST_RAD = 0.5
 # What this costs depends on what the board knows of the arm: a row without and a row with the numbers of `tune`.
