@@ -1,5 +1,5 @@
 """How near an identified model comes to an arm that it never saw: the default arm and ten random ones, starting from
-the white box; and methods side by side, all simulating for as many seconds of arm as the default method does.
+the white box.
 """
 
 from __future__ import annotations
@@ -12,15 +12,9 @@ import numpy as np
 
 from greywhale.arm import ArmParameters
 from greywhale.base.study import Task
-from greywhale.base.types import show_no_progress
 from greywhale.files.arm import default_arm, load_arm
 from greywhale.identify import IdentificationResult, identify
-from greywhale.identify.closed_loop import Loop, LoopResidual
-from greywhale.identify.data import prepare
-from greywhale.identify.fit import least_squares_fit
-from greywhale.identify.paper import PaperSearch
-from greywhale.identify.space import MOTOR, Space
-from greywhale.optimise import minimise
+from greywhale.identify.closed_loop import Loop
 from greywhale.protocol.table import ParameterTable
 from greywhale.simulate import plant_row
 from tools.benchmarks.figure import Figure, at_least, at_most
@@ -46,52 +40,6 @@ def identified(recorded: Recorded) -> tuple[IdentificationResult, float]:
     return outcome, time.perf_counter() - begin
 
 
-def side_by_side(recorded: Recorded, outcome: IdentificationResult) -> list[Figure]:
-    """Improvement on the second log and with the changed controller: at the paper's 510 closed loops, and at as many
-    closed loops as take the seconds of arm that the default method simulates (mostly in windows of half a second).
-    """
-    white = load_arm("white_box")
-    values = [table_of(name) for name in NAMES]
-    logs = [prepare(log, 1) for log in (recorded.fit, recorded.second, recorded.changed)]
-    first, second, changed = (Loop(log, values[n], white) for log, n in zip(logs, (0, 0, 1), strict=True))
-    before = [float(loop.error(Space.of(white, (), ()).base[None]).sum()) for loop in (second, changed)]
-    budget = round(outcome.found.simulated / first.seconds)
-
-    def better(plants: np.ndarray) -> list[float]:
-        return [
-            1.0 - float(loop.error(plants).sum()) / one for loop, one in zip((second, changed), before, strict=True)
-        ]
-
-    paper = PaperSearch(white, [first], 0, show_no_progress)
-    paper.run()
-    assert paper.x is not None
-    found = {f"paper, 20 values, {PAPER_BUDGET}": better(paper.plants(paper.x[None]))}
-    space = Space.of(white, (*MOTOR, "coulomb"), range(4))
-    low, high = np.maximum(space.bounds()[0], space.start() - 2.5), np.minimum(space.bounds()[1], space.start() + 2.5)
-    for method, allowed in (
-        (m, n) for n in (PAPER_BUDGET, budget) for m in ("gwo-woa", "gwo-woa-relative", "de", "cma-es")
-    ):
-        minimum = minimise(
-            lambda points: first.error(space.plants(points)).sum(axis=1),
-            low,
-            high,
-            method=method,
-            budget=allowed,
-            start=space.start()[None],
-        )
-        found[f"{method}, motors and Coulomb, {allowed}"] = better(space.plants(minimum.x[None]))
-    for allowed in (PAPER_BUDGET, budget):
-        steps = allowed // (len(space) + 1)
-        alone = least_squares_fit(LoopResidual([first], range(4)), space, space.start(), steps, 5.0)
-        found[f"least squares alone, {allowed}"] = better(space.plants(alone.x[None]))
-    found[f"default, as long as {budget}"] = [verdict.improvement for verdict in outcome.verdicts[1:]]
-    return [
-        Figure(f"default arm, closed loops: {name}; {which}", 100 * value, "% better")
-        for name, pair in found.items()
-        for which, value in zip(("set 2", "changed controller"), pair, strict=True)
-    ]
-
-
 def of_arm(arm: ArmParameters, seed: int) -> tuple[IdentificationResult, float]:
     with tempfile.TemporaryDirectory() as folder:
         return identified(record_three(arm, Path(folder), seed))
@@ -115,7 +63,6 @@ def of_random_arm(seed: int) -> dict[str, float]:
 
 def run() -> list[Figure]:
     outcome, seconds = of_arm(default_arm(), 1)
-    default = outcome
     gains = [100 * verdict.improvement for verdict in outcome.verdicts]
     figures = [
         at_least("default arm: better than white box, set 2", gains[1], "%", 97),
@@ -133,6 +80,4 @@ def run() -> list[Figure]:
         Figure(f"{ARMS} random arms: the same of the true arms", float(np.median(ceiling)), "%"),
         at_most(f"{ARMS} random arms: slowest", max(times), "s", 30),
     ]
-    with tempfile.TemporaryDirectory() as folder:
-        figures += side_by_side(record_three(default_arm(), Path(folder), 1), default)
     return figures
