@@ -16,7 +16,6 @@ from greywhale_sim.programs import load_hex
 from tests.firmware.conftest import enable, ms_until_off
 from tests.simulated_board.stk500 import Version1, Version2
 
-PHASES = 8
 OFF_MS = 20.0
 BOOTED_MS = 1500  # through either bootloader
 SREG, INTERRUPTS_ON = 0x5F, 0x80
@@ -87,18 +86,6 @@ def go_astray(bench: BoardWithImage) -> None:
 
 def reset_cause(bench: BoardWithImage) -> schema.ResetCause:
     return bench.ask(schema.HelloRequest()).reset_cause
-
-
-@pytest.mark.slow
-def test_a_hang_with_interrupts_off_turns_the_motors_off_within_20_ms(bench: BoardWithImage) -> None:
-    for _ in range(PHASES):
-        follow(bench)
-        hang(bench)
-        assert ms_until_off(bench) < OFF_MS
-        bench.wait(60)
-        seen = bench.status()
-        assert (seen.state, seen.fault) == (schema.State.FAULT, schema.Fault.WATCHDOG)
-        assert not bench.motors_on
 
 
 def see_it_stay_silent(nano: BoardWithImage) -> None:
