@@ -13,7 +13,7 @@ from greywhale_sim.board_with_image import BoardWithImage
 from greywhale_sim.wiring import BOARDS
 from tools.attack.part import Part, Piece, Row, split
 
-HOURS, PIECE_S = 24, 450
+HOURS, PIECE_S = 4, 450
 ANSWER_MS = 25  # a set that is applied takes 12
 EXCUSED = 4  # samples after the answer: what was lost shows at the next one
 WRAP_AFTER = 60_000  # ticks, until the counter of 32 bits begins anew
