@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -65,6 +67,9 @@ def test_sentences_name_the_joint_and_what_may_be_missing() -> None:
     assert "the model hunts" in describe_difference("log3.csv", REST, hunts, (2,))[0]
     assert "but the model by 6.0 mrad" in describe_difference("log3.csv", hunts, small, (2,))[0]
     assert describe_difference("log3.csv", hunts, hunts, (0, 1, 2, 3)) == []
+    near = replace(small, rms=(1e-3, 1e-3, 0.010, 1e-3), hunts=(False,) * 4)
+    assert describe_difference("log3.csv", hunts, near, (2,)) == [], "it just does not hunt"
+    assert describe_difference("log3.csv", near, hunts, (2,)) == []
     assert describe_difference("log3.csv", hunts, REST, (0, 1, 3)) == []
 
 
