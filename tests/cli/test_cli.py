@@ -179,6 +179,13 @@ def test_stop_begins_with_what_helps_where_it_cannot(capsys: Captured) -> None:
     assert f"{board.port}: the port is in use by process {holder} (" in said
 
 
+def test_poses_that_are_too_near_are_refused_before_the_first_sweep(capsys: Captured) -> None:
+    with FakeBoard() as board:
+        assert entry.run(["calibrate", "--second", "45,45,5,45", "--port", board.port]) == 2
+        assert "differ by 0.087 rad at joint 2" in capsys.readouterr().err
+        assert board.asked(schema.ParamGetRequest) == 0
+
+
 def test_upload_tells_what_changed(capsys: Captured) -> None:
     with FakeBoard() as board:
         code, answer = ask(capsys, "upload", TABLE_10, "--port", board.port)

@@ -60,7 +60,7 @@ def test_a_scripts_lines_are_answers_whenever_they_were_written(piped: Typing) -
     assert person.answer() is None
     piped(b"")
     assert person.answer() is Answer.DONE
-    with pytest.raises(UserError, match="the input ended in the middle of the calibration"):
+    with pytest.raises(UserError, match="the input ended in the middle of the questions"):
         person.answer()
 
 

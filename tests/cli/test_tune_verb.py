@@ -194,7 +194,7 @@ def test_a_terminal_is_asked_before_controllers_are_stored_whose_margins_fail(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, answer: bool, code: int
 ) -> None:
     monkeypatch.setattr("greywhale.cli.upload.sys.stdin.isatty", lambda: True)
-    monkeypatch.setattr("greywhale.cli.upload.click.confirm", lambda question, err: answer)
+    monkeypatch.setattr("greywhale.cli.upload.Terminal.agrees", lambda terminal, question: answer)
     controller.save(tmp_path / "c.toml", default_controller(), tuning={"margins_hold": False})
     with FakeBoard() as board:
         assert entry.run(["upload", str(tmp_path / "c.toml"), "--port", board.port]) == code

@@ -31,7 +31,7 @@ def written(path: Path) -> bytes:
             {**ABOUT, "budget": 600},
             "its budget is 500, now it is 600; give the same again, or name another file.",
         ),
-        (TASKS, {}, "its budget is 500, now it is null;"),
+        (TASKS, {}, "its budget is 500, now it is not given;"),
         (jobs.draws(3), ABOUT, "its number of tasks is 2, now it is 3;"),
         (
             [TASKS[0], Task("draw 1", jobs.draw, 1, {"count": 42})],

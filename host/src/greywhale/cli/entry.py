@@ -135,5 +135,6 @@ def _with_notes(message: str, error: BaseException) -> str:
 
 
 def _usage_sentence(error: click.UsageError) -> str:
-    message = error.format_message()
+    message = " ".join(error.format_message().split())
+    message += "" if message[-1:] in (".", "?") else "."
     return f"{message} Try `{error.ctx.command_path} --help`." if error.ctx else message

@@ -44,8 +44,8 @@ def command(
 
     A .fis holds one fuzzy controller: without --joint there are four, named OUT_joint0.fis to OUT_joint3.fis. Its
     inputs are Kp e and Kd ce within [-1, 1], its sets those that the firmware stores. Controllers and arms
-    are files, or names that come with greywhale: before_tuning, table_8, table_9, table_10; default, worn, white_box,
-    grey_box, sticky_grey_box.
+    are files, or names that come with greywhale: before_tuning, table_8, table_9, table_10; default, worn, two_joints,
+    white_box, grey_box, sticky_grey_box.
     """
     if sum(source is not None for source in (fis, urdf, mjcf)) != 1:
         raise click.UsageError("Give exactly one of --fis, --urdf and --mjcf.")

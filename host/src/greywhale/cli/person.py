@@ -89,7 +89,7 @@ class Terminal:
                 return None
             data = os.read(sys.stdin.fileno(), 4096)
             if not (data or self._typed):
-                raise UserError("the input ended in the middle of the calibration.")
+                raise UserError("the input ended in the middle of the questions.")
             self._typed += data or b"\n"  # the last line needs no end
         line, _, self._typed = self._typed.partition(b"\n")
         return line.decode("utf-8", "replace")

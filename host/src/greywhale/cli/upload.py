@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import sys
 from collections.abc import Mapping
 from pathlib import Path
@@ -14,6 +15,7 @@ from greywhale.board.device import Device
 from greywhale.board.upload import UploadFacts, change_parameters, read_parameters
 from greywhale.cli import completion
 from greywhale.cli.output import FILE, OnPort, json_option, option, port_option, progress, show, tell
+from greywhale.cli.person import Terminal
 from greywhale.files import controller as controller_file
 from greywhale.protocol.ports import choose_port
 from greywhale.protocol.table import ParameterTable
@@ -48,7 +50,7 @@ def command(controller: Path, yes: bool, port: str | None, as_json: bool) -> Non
         for warning in warnings:  # while Ctrl-C still leaves everything as it was
             tell(f"Warning: {warning}")
         asked = _margins_fail(checked.tuning or {}) and not (yes or as_json) and sys.stdin.isatty()
-        if asked and not click.confirm("Store these controllers all the same?", err=True):
+        if asked and not _agrees():
             raise UserError(f"{device.port}: nothing was uploaded; the board keeps its controllers.")
         with progress(brief=True) as report:
             uploaded = change_parameters(device, checked.raw_values(), report, running)
@@ -83,6 +85,11 @@ def _warnings(tuning: Mapping[str, Any], table: ParameterTable) -> list[str]:
         if abs(board - tuned) > 0.02 * board:
             warnings.append(f"it was tuned for {name} = {tuned / scale:g}, but this board has {board / scale:g}.")
     return warnings
+
+
+def _agrees() -> bool:
+    with contextlib.closing(Terminal()) as person:
+        return person.agrees("Store these controllers all the same?")
 
 
 def _margins_fail(tuning: Mapping[str, Any]) -> bool:

@@ -23,7 +23,7 @@ MEASURES: tuple[Measure, ...] = (
     ("rattle", "rattle in motion", "mrad rms", 1e3, ".1f"),
     ("chatter", "chatter", "1/s", 1.0, ".0f"),
     ("ripple", "ripple at rest, above 20 Hz", "V rms", 1.0, ".2f"),
-    ("voltage", "voltage, most", "V", 1.0, ".2f"),
+    ("voltage", "size of the voltage, mean", "V", 1.0, ".2f"),
     ("overshoot", "overshoot of moves", "%", 1.0, ".0f"),
     ("settling", "settling time of moves", "s", 1.0, ".2f"),
 )

@@ -165,5 +165,5 @@ def _object(line: bytes) -> Line | None:
 
 
 def _short(value: object) -> str:
-    text = json.dumps(value)
+    text = "not given" if value is None else json.dumps(value)
     return text if len(text) <= 60 else f"{text[:57]}..."

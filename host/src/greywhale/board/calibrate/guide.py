@@ -15,7 +15,7 @@ from greywhale.base.errors import UserError
 from greywhale.base.types import Floats
 from greywhale.board.calibrate.motors import Motor, examine_motor, remarks
 from greywhale.board.calibrate.person import Answer, Guide, Watch
-from greywhale.board.calibrate.solve import Calibration
+from greywhale.board.calibrate.solve import Calibration, require_apart
 from greywhale.board.calibrate.walk import Walk
 from greywhale.board.calibrate.words import HOW_TO_ANSWER, motor_named, motors_asked, poses_asked
 from greywhale.board.device import Device, RestartedError, hold_ctrl_c
@@ -79,6 +79,8 @@ class Result:
 
 def calibrate(device: Device, guide: Guide, options: Options) -> Result:
     """Lead a person through the whole calibration; nothing is stored. Raises UserError with the mistakes found."""
+    if options.second is not None:
+        require_apart(options.first, options.second, options.joints)
     state = device.status().state
     if state not in (schema.State.DISABLED, schema.State.FAULT):
         raise UserError(f"{device.port}: the motors are on; stop them with `greywhale stop` first.")

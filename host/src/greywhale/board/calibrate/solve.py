@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from greywhale.base.errors import UserError
+from greywhale.base.errors import BadUsage, UserError
 from greywhale.base.types import Floats
 from greywhale.board.calibrate.sweep import Sweep
 from greywhale.board.pots import COUNT14, FULL_SCALE, POTS
@@ -115,18 +115,25 @@ def slipped(before: Pose, after: Pose) -> list[str]:
     ]
 
 
+def require_apart(first: Floats, second: Floats, joints: Sequence[int]) -> None:
+    """Refuse two poses (4,), rad, from which no scale can be told."""
+    for joint in joints:
+        turned = second[joint] - first[joint]
+        if abs(turned) < LEAST_TURN:
+            raise BadUsage(
+                f"the two poses differ by {turned:.2g} rad at joint {joint}; choose a second pose that differs by "
+                f"{LEAST_TURN:g} rad or more at every joint."
+            )
+
+
 def _between(first: Pose, second: Pose, signs: Floats, pots: Sequence[int]) -> Floats:
     """Scales of these potentiometers from two poses; they must agree with the directions of the sweeps."""
+    require_apart(first.angles, second.angles, sorted({pot % JOINTS for pot in pots}))
     turned = np.tile(second.angles - first.angles, 2)
     moved = second.counts - first.counts
     scale = np.ones(len(POTS))
     for pot in pots:
         name = pot_name(pot)
-        if abs(turned[pot]) < LEAST_TURN:
-            raise UserError(
-                f"the two poses differ by {turned[pot]:.2g} rad at joint {pot % JOINTS}; choose a second pose that "
-                f"differs by {LEAST_TURN:g} rad or more at every joint."
-            )
         track = abs(turned[pot] / moved[pot]) * FULL_SCALE if moved[pot] else np.inf
         if not SHORTEST_TRACK <= track <= LONGEST_TRACK:
             raise UserError(
