@@ -28,7 +28,7 @@ CONVERSIONS_S = 0.5e-3
 def scale_of(drills: Sequence[TrainingMotion], plants: Floats, before: Controllers, threads: int = 0) -> ErrorScale:
     """Floors, and errors and rattling of the controllers from before (4, 13), on every plant."""
     late = lateness_s(drills[0].experiment.table)
-    floor = np.stack([[_least_error(drill, plant, late, threads) for drill in drills] for plant in plants])
+    floor = np.stack([_least_errors(drill, plants, late, threads) for drill in drills], axis=1)
     found = follow(drills, plants, before[None], threads=threads)
     least = np.maximum(LEAST_SHARE * floor, LEAST_RAD)
     return ErrorScale(floor, np.maximum(found.error[0] - floor, least), found.rattle[0])
@@ -40,9 +40,9 @@ def lateness_s(table: ParameterTable) -> float:
     return CONVERSIONS_S + low_pass + 0.5e-3 * table.period_ms
 
 
-def _least_error(drill: TrainingMotion, plant: Floats, late_s: float, threads: int) -> Floats:
-    """The ideal controller's error (4,) in rad, measured like a candidate's."""
-    leader, angles = follow_ideally(drill.motion, plant, delay_s=late_s, wait_s=WAIT_S, threads=threads)
+def _least_errors(drill: TrainingMotion, plants: Floats, late_s: float, threads: int) -> Floats:
+    """The ideal controller's error on every plant (plants, 4) in rad, measured like a candidate's."""
+    leader, angles = follow_ideally(drill.motion, plants, delay_s=late_s, wait_s=WAIT_S, threads=threads)
     distance = np.abs(leader - angles)
     weight = drill.experiment.weight_s[:, None]
-    return error_of((weight * distance).sum(axis=0) / weight.sum(), np.square(distance).mean(axis=0))
+    return error_of((weight * distance).sum(axis=1) / weight.sum(), np.square(distance).mean(axis=1))

@@ -118,11 +118,15 @@ def saturation_floor(
 
 
 def follow_ideally(
-    motion: Trajectory, plant: Floats, *, delay_s: float, wait_s: float, threads: int = 0
+    motion: Trajectory, plants: Floats, *, delay_s: float, wait_s: float, threads: int = 0
 ) -> tuple[Floats, Floats]:
-    """The leader's and the ideal controller's angles (ticks, 4) in rad, as of `saturation_floor`, without its bound."""
-    loop = _loop_of(motion, plant, None, delay_s, wait_s, 0.0, False, threads)
-    return loop.leader, loop.run(_best(loop)[None], keep=True)[1][0]
+    """The leader's angles (ticks, 4) and the ideal controller's (plants, ticks, 4) in rad, as of `saturation_floor`.
+
+    The law's open numbers are those of the first plant.
+    """
+    loops = [_loop_of(motion, plant, None, delay_s, wait_s, 0.0, False, threads) for plant in plants]
+    tunings = _best(loops[0])[None]
+    return loops[0].leader, np.stack([loop.run(tunings, keep=True)[1][0] for loop in loops])
 
 
 def _loop_of(
