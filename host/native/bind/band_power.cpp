@@ -10,6 +10,7 @@
 #include "bindings.h"
 #include "closed_loop/band_power.h"
 #include "closed_loop/experiment.h"
+#include "share_out.h"
 
 namespace nb = nanobind;
 using namespace nb::literals;
@@ -37,10 +38,10 @@ nb::object band_power(const In<T, nb::shape<-1, -1, kJoints>>& angles, std::size
   {
     const nb::gil_scoped_release free;
     const loop::Section<kJoints> low = section(sections.data()), high = section(sections.data() + kNumbers);
-    for (std::size_t n = 0; n < count; ++n) {
+    greywhale::share_out(count, 0, [&](std::size_t n) {
       loop::band_power(angles.data() + n * rows * kJoints, stride, blocks, length, low, high,
                        power.get() + n * blocks * kJoints);
-    }
+    });
   }
   double* raw = power.release();
   const nb::capsule owner(raw, [](void* p) noexcept { delete[] static_cast<double*>(p); });

@@ -23,6 +23,7 @@
 #include "closed_loop/experiment.h"
 #include "closed_loop/plant_columns.h"
 #include "closed_loop/swings.h"
+#include "share_out.h"
 
 namespace nb = nanobind;
 using namespace nb::literals;
@@ -192,14 +193,14 @@ nb::tuple swings(const In<T, nb::shape<-1, -1, kJoints>>& traces, std::size_t fi
   Array<double> travel({count, kJoints});
   {
     const nb::gil_scoped_release free;
-    for (std::size_t n = 0; n < count; ++n) {
+    greywhale::share_out(count, 0, [&](std::size_t n) {
       loop::Swings found[kJoints];
       loop::swings_of<kJoints>(traces.data() + (n * traces.shape(1) + first) * kJoints, last - first, band, found);
       for (std::size_t i = 0; i < kJoints; ++i) {
         reversals.data()[n * kJoints + i] = found[i].reversals;
         travel.data()[n * kJoints + i] = found[i].travel;
       }
-    }
+    });
   }
   return nb::make_tuple(reversals.numpy(), travel.numpy());
 }
@@ -212,12 +213,12 @@ nb::object ripple(const In<std::int16_t, nb::shape<-1, -1, kJoints>>& traces, st
   Array<double> squares({count, kJoints});
   {
     const nb::gil_scoped_release free;
-    for (std::size_t n = 0; n < count; ++n) {
+    greywhale::share_out(count, 0, [&](std::size_t n) {
       for (std::size_t i = 0; i < kJoints; ++i) {
         const std::int16_t* from = traces.data() + (n * traces.shape(1) + first) * kJoints + i;
         squares.data()[n * kJoints + i] = loop::ripple_of(from, last - first, kJoints, window);
       }
-    }
+    });
   }
   return squares.numpy();
 }
