@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
+from greywhale.tune.judge.margins import TEETH
 from greywhale.tune.report.controller_file import save
 from greywhale.tune.report.summary import summary
 from greywhale.tune.result import TuningResult
@@ -73,6 +74,17 @@ def test_what_does_not_come_to_rest_is_named(outcome: TuningResult) -> None:
     text = summary(replace(outcome, margins=(*outcome.margins, delayed)))
     assert "\nMargins that do not hold: joint 1 (shoulder pitch), one period more delay.\n" in text
     assert "NOT STEADY" not in text
+
+
+def test_what_was_no_better_before_speaks_for_neither(outcome: TuningResult, tmp_path: Path) -> None:
+    both = tuple(replace(margin, scenario="one period more delay", plants_failing=1) for margin in outcome.margins[:1])
+    as_before = replace(outcome, margins_before=both, margins=both)
+    text = summary(as_before)
+    assert "\nMargins that did not hold before either: joint 1 (shoulder pitch), one period more delay.\n" in text
+    assert "Margins that do not" not in text
+    assert as_before.steady
+    assert not replace(as_before, margins=(replace(both[0], plants_failing=2),)).steady
+    assert replace(as_before, margins=(replace(both[0], scenario=TEETH),)).steady, "that is no condition"
 
 
 def test_an_unfinished_one_was_not_judged(outcome: TuningResult) -> None:

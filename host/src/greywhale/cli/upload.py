@@ -39,7 +39,7 @@ def command(controller: Path, yes: bool, port: str | None, as_json: bool) -> Non
 
     Those are before_tuning, and table_8, table_9 and table_10 of the paper.
     The board takes the set over only when all of it has arrived and passed its checks, with the motors off. All other
-    parameters (potentiometers, limits, directions) keep their values. Where a margin of the tuning does not hold, a
+    parameters (potentiometers, limits, directions) keep their values. Where a joint may swing that did not before, a
     terminal is asked first.
     """
     checked = controller_file.load(controller)

@@ -21,7 +21,7 @@ from greywhale.commission.trials import Trial, TrialFacts, Trials
 class RoundFacts(TypedDict):
     round: int  # counted from 1
     doubts: list[str]  # about the round's model
-    margins_hold: bool  # all those of its tuned controllers on its model
+    margins_hold: bool  # those of its tuned controllers on its model, wherever they held before
     trials: list[str]  # their names
 
 

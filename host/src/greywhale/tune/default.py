@@ -24,6 +24,7 @@ import numpy as np
 from greywhale.arm.parameters import with_usual_noise
 from greywhale.base.errors import counted
 from greywhale.base.types import Controllers, Flags, Floats
+from greywhale.motion.swings import CHATTER_AT_REST_HZ, CHATTER_MOVING_HZ, LIMIT_CYCLE, RATTLE_MOVING_RAD
 from greywhale.optimise.optimiser import PACK
 from greywhale.optimise.relative import RelativeWolfWhale
 from greywhale.protocol.joints import unused
@@ -305,13 +306,15 @@ def _notes(margins: tuple[Margin, ...]) -> tuple[str, ...]:
 
 
 def _note(margin: Margin) -> str:
-    what = f"the joint rattles by {1e3 * margin.rattle_rad:.1f} mrad"
-    if margin.scenario != MOVING:
-        what = f"the joint turns round {counted(margin.reversals, 'time')} in a rest"
-    return (
-        f"joint {margin.joint}, {margin.scenario}: {what}, and the duty swings {margin.chatter_hz:.0f} times a second "
-        f"(the worst of the {margin.plants_failing} that fail of {margin.plants} simulated arms)"
-    )
+    found = []
+    if margin.rattle_rad >= RATTLE_MOVING_RAD:
+        found.append(f"rattles by {1e3 * margin.rattle_rad:.1f} mrad")
+    if margin.reversals >= LIMIT_CYCLE.turns:
+        found.append(f"turns round {counted(margin.reversals, 'time')} in a rest")
+    if margin.chatter_hz > (CHATTER_MOVING_HZ if margin.scenario == MOVING else CHATTER_AT_REST_HZ):
+        found.append(f"has a voltage that swings {margin.chatter_hz:.0f} times a second")
+    arms = f"{margin.plants_failing} of {counted(margin.plants, 'simulated arm')}"
+    return f"joint {margin.joint}, {margin.scenario}: on {arms} it {' and '.join(found) or 'is lost'}"
 
 
 def _digest(plants: Floats) -> str:
