@@ -24,7 +24,7 @@ from greywhale.simulate.leader import SLICE_S
 from greywhale.tune import default, possible
 from greywhale.tune.judge import margins, standard
 from greywhale.tune.model import Model, load_model
-from greywhale.tune.search import lockstep, objective, space, training
+from greywhale.tune.search import objective, space, training
 from tools.site.bench_data import pot_numbers
 
 SCALE_RAD = 1e-5
@@ -184,7 +184,6 @@ def _search(model: Model) -> dict[str, Any]:
     return {
         "budget": BUDGET,
         "pack": PACK if BUDGET < default.SHORT_BUDGET else default.FULL_PACK,
-        "turns": lockstep.TURNS,
         "a": relative.A,
         "weights": relative.WEIGHTS,
         "keep": relative.KEEP,
@@ -194,6 +193,7 @@ def _search(model: Model) -> dict[str, Any]:
                 "share": stage.share,
                 "sigma": stage.sigma,
                 "space": "whole" if stage.every_corner else "reduced",
+                "groups": [list(group) for group in stage.groups],
                 "random": [_state(SEED, number, joint) for joint in range(JOINTS)],
             }
             for number, stage in enumerate(default.STAGES, 1)

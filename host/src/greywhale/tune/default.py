@@ -2,7 +2,8 @@
 
 1. `shape`: one search a joint (`search/lockstep.py`) for sets that are the same on both sides of zero. It runs over
    several plants and all training motions, each class of them counted by what is possible in it (`possible.py`).
-   Unrest costs extra. Joints 0 and 2 take turns with 1 and 3, because neighbours disturb each other.
+   Unrest costs extra. Joints 0 and 2 take turns with 1 and 3, because neighbours disturb each other. Once the packs
+   are close around the best, all joints search at the same time.
 2. `shape again`, twice: fresh packs, ever closer around the best so far. What neighbours did counts in a joint's cost,
    and by now they do better. So everything is judged anew.
 3. `every corner`: a narrow search from there, in which each corner and factor is free.
@@ -44,7 +45,7 @@ from greywhale.tune.search.objective import Objective
 from greywhale.tune.search.space import Space
 from greywhale.tune.search.training import TrainingMotion, own_motion, training_motions
 
-BUDGET = 3000
+BUDGET = 2400
 METHOD = RelativeWolfWhale.name  # of the default method
 
 
@@ -55,17 +56,18 @@ class Stage:
     name: str
     share: float  # of the budget
     sigma: float | None  # of the first pack, as a share of the box; None: all over it
+    groups: Sequence[Sequence[int]]  # of joints that search at the same time
     every_corner: bool = False
 
 
 STAGES = (
-    Stage("shape", 0.4, None),
-    Stage("shape again", 0.15, 0.15),
-    Stage("shape at last", 0.15, 0.05),
-    Stage("every corner", 0.3, 0.03, every_corner=True),
+    Stage("shape", 0.5, None, lockstep.TURNS),
+    Stage("shape again", 0.19, 0.15, lockstep.TURNS),
+    Stage("shape at last", 0.1, 0.05, lockstep.TOGETHER),
+    Stage("every corner", 0.21, 0.03, lockstep.TOGETHER, every_corner=True),
 )
 # What joints get that fall short in the last judgement, beyond the budget, and what a failure costs there.
-AGAIN = Stage("again", 0.05, 0.05)
+AGAIN = Stage("again", 0.06, 0.05, lockstep.TOGETHER)
 STRICT_PRICE = 0.6
 # The search tracks on so many plants, the estimate first; the last judgement uses all.
 SEARCH_PLANTS = 2
@@ -144,10 +146,10 @@ class DefaultMethod:
                 self._add_hard_plant()
             left = task.budget - self.found.evaluations
             share = left if stage is STAGES[-1] else min(left, round(stage.share * task.budget))
-            if number > 1 and share > len(lockstep.TURNS):
+            if number > 1 and share > len(stage.groups):
                 lockstep.try_again(self.costs, self.found, journal, stage.name)
                 share -= 1
-            self._run(stage, number, share // len(lockstep.TURNS), self.costs, self.found, journal, tick)
+            self._run(stage, number, share // len(stage.groups), self.costs, self.found, journal, tick)
 
     def _add_hard_plant(self) -> None:
         """From now on the margins are looked at also on a plant that has each joint as it fails most of them, and in
@@ -167,9 +169,8 @@ class DefaultMethod:
         found: SearchState,
         journal: TuningJournal,
         tick: lockstep.Tick,
-        groups: Sequence[Sequence[int]] = lockstep.TURNS,
     ) -> None:
-        """Spend a stage's evaluations of each joint in `groups`."""
+        """Spend a stage's evaluations of each joint."""
         if budget < 1:
             return
         space = self.space if stage.every_corner else self.space.reduce()
@@ -184,7 +185,7 @@ class DefaultMethod:
             seed=(self.task.seed, number),
             start=found.best if stage.every_corner else space.restretch(found.best),
             tick=tick,
-            groups=groups,
+            groups=stage.groups,
             sigma=stage.sigma,
             pack=FULL_PACK if self.task.budget >= SHORT_BUDGET else PACK,
         )
@@ -263,9 +264,9 @@ class DefaultMethod:
 
         found, journal = SearchState.nothing(rows), TuningJournal(None, {})
         lockstep.try_again(costs, found, journal, AGAIN.name)
-        budget = round(AGAIN.share * self.task.budget)
-        joints = np.flatnonzero(short).tolist()
-        self._run(AGAIN, len(STAGES) + 1, budget, costs, found, journal, lambda _: None, (joints,))
+        stage = replace(AGAIN, groups=(np.flatnonzero(short).tolist(),))
+        budget = round(stage.share * self.task.budget)
+        self._run(stage, len(STAGES) + 1, budget, costs, found, journal, lambda _: None)
         return found.contenders(lockstep.KEPT)
 
     def _disturbing(self, after: Controllers, worse: Flags, judge: Judge) -> Flags:

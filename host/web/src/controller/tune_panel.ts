@@ -14,7 +14,7 @@ const PROMISE = "GWO-WOA tries 500 sets of four controllers, and begins with tho
 const LEFT_OUT = "It tunes the arm as this page begins with it, at the board's own period and limits; what you broke, loaded or "
   + "changed on the bench it does not know. Left out are: identification, as the arm's numbers are known here, and so the "
   + "other arms that a recording would allow; rivals for the last place; the report with its held-out motions; and the least "
-  + "error that a supply allows. greywhale tune tries 3000 sets.";
+  + "error that a supply allows. greywhale tune tries 2400 sets.";
 
 export class TunePanel {
   readonly element: HTMLElement;

@@ -42,13 +42,13 @@ export type Stage = {
   readonly share: number;
   readonly sigma: number | null;
   readonly space: "whole" | "reduced";
+  readonly groups: readonly (readonly number[])[]; // of joints that search at the same time
   readonly random: readonly (readonly [string, string])[]; // a generator's state and increment for each joint
 };
 
 export type SearchData = {
   readonly budget: number;
   readonly pack: number;
-  readonly turns: readonly (readonly number[])[];
   readonly a: number;
   readonly weights: readonly number[];
   readonly keep: number;

@@ -32,16 +32,16 @@ export class Search implements Found {
   /** Spends the budget, a batch at each step. */
   *run(): Generator<Found, void> {
     yield this.tryAgain();
-    const { stages, budget, turns } = this.how;
+    const { stages, budget } = this.how;
     for (const [number, stage] of stages.entries()) {
       const left = budget - this.evaluations;
       this.refines = number > 0;
       let share = number === stages.length - 1 ? left : Math.min(left, rint(stage.share * budget));
-      if (number && share > turns.length) {
+      if (number && share > stage.groups.length) {
         yield this.tryAgain();
         share--;
       }
-      if (share >= turns.length) yield* this.runStage(stage, Math.floor(share / turns.length));
+      if (share >= stage.groups.length) yield* this.runStage(stage, Math.floor(share / stage.groups.length));
     }
   }
 
@@ -61,7 +61,7 @@ export class Search implements Found {
       return new WolfWhale(how, space.bounds, budget, random, how.pack, pack, this.math);
     });
     while (!packs.every(({ done }) => done)) {
-      for (const group of how.turns) {
+      for (const group of stage.groups) {
         if (group.every((joint) => packs[joint]!.done)) continue;
         const asked = packs.map((pack, joint) => (group.includes(joint) && !pack.done ? pack.ask() : []));
         const counts = asked.map(({ length }) => length);
