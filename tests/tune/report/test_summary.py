@@ -85,6 +85,10 @@ def test_what_was_no_better_before_speaks_for_neither(outcome: TuningResult, tmp
     assert as_before.steady
     assert not replace(as_before, margins=(replace(both[0], plants_failing=2),)).steady
     assert replace(as_before, margins=(replace(both[0], scenario=TEETH),)).steady, "that is no condition"
+    hunting = (replace(both[0], scenario="at rest"),)
+    still_hunting = replace(outcome, margins_before=hunting, margins=hunting)
+    assert "\nNOT STEADY: joint 1 (shoulder pitch), at rest.\n" in summary(still_hunting), "an arm that hunts, hunts"
+    assert not still_hunting.steady
 
 
 def test_an_unfinished_one_was_not_judged(outcome: TuningResult) -> None:

@@ -9,7 +9,7 @@ from greywhale.base.types import Controllers, PerJoint
 from greywhale.protocol.schema import PARAMETER_BY_NAME
 from greywhale.protocol.table import CONTROLLER_COLUMNS, ParameterTable, physical
 from greywhale.tune.judge.held_out import HeldOut, HeldOutFacts
-from greywhale.tune.judge.margins import TEETH, Margin, MarginFacts
+from greywhale.tune.judge.margins import AT_REST, TEETH, Margin, MarginFacts
 from greywhale.tune.model import Model
 from greywhale.tune.search.lockstep import SearchState
 from greywhale.tune.search.space import STRATEGIES
@@ -117,8 +117,9 @@ class TuningResult:
 
     @property
     def steady(self) -> bool:
-        """Whether every joint comes to rest wherever it did before; softer teeth are no condition for that."""
-        return all(margin.scenario == TEETH for margin in self.lost_margins)
+        """Whether every joint rests on the arm as it is, and wherever else it did before, but for softer teeth."""
+        resting = all(margin.holds for margin in self.margins if margin.scenario == AT_REST)
+        return resting and all(margin.scenario == TEETH for margin in self.lost_margins)
 
     def as_dict(self) -> TuningFacts:
         return {

@@ -120,12 +120,12 @@ def failing_margins(outcome: TuningResult) -> list[str]:
     """A sentence for joints that are not steady, one for those that would not be on a slightly different arm, and one
     for those that were no better before.
     """
-    lost = outcome.lost_margins
-    as_before = [one for one in outcome.margins if not one.holds and one not in lost]
+    failing = [margin for margin in outcome.margins if not margin.holds]
+    different, lost = [one for one in failing if one.scenario != AS_IT_IS], outcome.lost_margins
     groups = {
-        "NOT STEADY": [one for one in lost if one.scenario == AS_IT_IS],
-        "Margins that do not hold": [one for one in lost if one.scenario != AS_IT_IS],
-        "Margins that did not hold before either": as_before,
+        "NOT STEADY": [one for one in failing if one.scenario == AS_IT_IS],
+        "Margins that do not hold": [one for one in different if one in lost],
+        "Margins that did not hold before either": [one for one in different if one not in lost],
     }
     return [f"{title}: {'; '.join(_named(one) for one in some)}." for title, some in groups.items() if some]
 
