@@ -8,10 +8,8 @@ from greywhale.protocol import schema
 from greywhale_sim.board_with_image import CYCLES_PER_TICK, UNWATCHED, BoardWithImage, ram_of_a_life
 from greywhale_sim.wiring import BOARDS
 from tools.benchmarks.figure import Figure, at_most
-from tools.support.fuzzy_search import Random
 
 TICKS = 250
-SETS, TICKS_PER_SET = 300, 10  # for the worst tick over the parameters
 
 
 def ticks(name: str) -> list[Figure]:
@@ -31,28 +29,6 @@ def ticks(name: str) -> list[Figure]:
         Figure(f"{name.title()}: tick, mean", float(np.mean(alone)), "cycles"),
         Figure(f"{name.title()}: tick with its interrupts, worst", max(whole) / 16, "us"),
     ]
-
-
-def over_parameters(name: str) -> Figure:
-    """The dearest tick over random sets for all joints, most of them where the sets bend, with the slowest low-pass."""
-    bench, draw = BoardWithImage(name), Random(5)
-    worst = 0.0
-    for _ in range(SETS):
-        bench.millivolts[:] = 2500.0
-        bench.board.set_millivolts(bench.millivolts)
-        bench.wait(30)
-        values = {"filter_shift": 2, "soft_start_ms": 100, "tracking_limit": 0} | UNWATCHED
-        for joint in range(4):
-            values |= {f"joint{joint}.{key}": value for key, value in vars(draw.settings(1)).items()}
-        bench.apply(values)
-        bench.wait(30)
-        bench.ask(schema.EnableRequest(0))
-        bench.wait(110)
-        for _ in range(TICKS_PER_SET):
-            bench.wiggle(10.0 ** bench.random.uniform(0, 3.3))
-            worst = max(worst, bench.tick_cycles()[1])
-        bench.ask(schema.StopRequest())
-    return Figure(f"{name.title()}: tick, worst of {SETS * TICKS_PER_SET} over the parameters", worst, "cycles")
 
 
 def jitter(name: str) -> Figure:
@@ -100,5 +76,5 @@ def memory(name: str) -> Figure:
 def run() -> list[Figure]:
     figures = []
     for name in BOARDS:
-        figures += [*ticks(name), over_parameters(name), jitter(name), *latency(name), memory(name)]
+        figures += [*ticks(name), jitter(name), *latency(name), memory(name)]
     return figures
