@@ -133,21 +133,6 @@ def test_the_scenario_shows_what_it_is_for(runs: tuple[Run, Run]) -> None:
     assert all(len(np.unique(following[:, column])) > 100 for column in range(4))
 
 
-def test_the_watchdog_of_the_other_simulator_ends_a_hang() -> None:
-    """After a hang with interrupts off: motors off within 16.4 ms, and the board says why it started again."""
-    output = subprocess.run(
-        ["node", str(SCRIPTS / "hang.js"), str(IMAGE)], env=NODE, check=True, capture_output=True, text=True
-    ).stdout
-    found = json.loads(output)
-    assert found["resets"] == 1
-    assert found["cycles"] <= 16.4 * 16_000
-    assert not found["drivers"]
-    (frame,) = frames.FrameDecoder().feed(bytes.fromhex(found["sent"]))
-    hello = schema.HelloReply.unpack(frame.payload)
-    assert isinstance(hello, schema.HelloReply)
-    assert hello.reset_cause == schema.ResetCause.WATCHDOG
-
-
 def test_the_pins_carry_the_duties_of_the_compare_registers() -> None:
     """By the other simulator's own timers: 20 kHz from timer 1, 31.4 kHz from timer 2, mean levels to 0.5 %.
 

@@ -11,7 +11,6 @@ const TICK_VECTOR = 14 * 2; // TIMER0_COMPA, a word address
 const ADEN = 0x80, ADSC = 0x40, ADATE = 0x20, ADIF = 0x10, ADTS = 0x07;
 const RXEN = 0x10, RXC = 0x80;
 const MCUSR = 0x54, PORF = 0x01;
-const FIRST_REGISTER = 0x20, REGISTERS = 0xe0;
 
 /** Adds free-running conversion, the end of a conversion by ADEN = 0, and clearing ADIF by writing one to it. */
 class FreeRunningAdc extends avr.AVRADC {
@@ -98,26 +97,8 @@ class Nano {
     this.usart = new Usart(cpu);
     this.eepromBytes = new avr.EEPROMMemoryBackend(1024);
     this.eeprom = new avr.AVREEPROM(cpu, this.eepromBytes);
-    this.watchdog = new avr.AVRWatchdog(cpu, avr.watchdogConfig, new avr.AVRClock(cpu, HZ));
     this.onTick = () => {};
-    this.resets = 0;
-    const reset = cpu.reset.bind(cpu);
-    cpu.reset = () => this.clearRegisters(reset);
     cpu.data[MCUSR] = PORF; // a power-on, which avr8js does not record
-  }
-
-  /** What a reset does to a chip, and to avr8js only in part: registers and peripherals start anew, RAM stays. */
-  clearRegisters(reset) {
-    const { cpu } = this;
-    const cause = cpu.data[MCUSR];
-    cpu.data.fill(0, FIRST_REGISTER, FIRST_REGISTER + REGISTERS);
-    reset();
-    cpu.data[MCUSR] = cause;
-    this.adc.converting = false;
-    this.adc.conversionCycles = 25;
-    this.usart.reset();
-    for (const timer of this.timers) timer.reset();
-    this.resets += 1;
   }
 
   /** Runs to the first instruction boundary at or after this cycle; calls onTick() at each tick's interrupt. */
