@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 
-from greywhale_sim.wiring import BOARDS, Motor, Pin, Pwm, Wiring, markdown_table
+from greywhale_sim.wiring import BOARDS, MEGA, NANO, Motor, Pin, Pwm, Wiring, markdown_table
 from tools import ROOT
-from tools.generate.wiring_pictures import IMAGES, PICTURES
 
 # Which compare output is on which Arduino pin, from the boards' own pin tables.
 PWM_PINS = {
@@ -42,10 +43,22 @@ def test_the_guide_shows_this_table() -> None:
     assert markdown_table() in (ROOT / "docs" / "your-arm.md").read_text(encoding="utf-8")
 
 
-@pytest.mark.parametrize("name", PICTURES)
-def test_the_pictures_show_these_pins(name: str) -> None:
-    """If not: `python -m tools.generate.wiring_pictures`."""
-    assert (IMAGES / name).read_text(encoding="utf-8") == PICTURES[name].svg()
+FIRST = MEGA.motors[0]
+
+
+@pytest.mark.parametrize(
+    ("name", "wired"),
+    [
+        ("power", (MEGA.estop, NANO.estop)),
+        ("pwm-direction", (FIRST.pwm, FIRST.direction, MEGA.enable)),
+        ("two-directions", (FIRST.pwm, FIRST.direction, FIRST.second_direction, MEGA.enable)),
+        ("two-pwm", (FIRST.pwm, FIRST.second_pwm, MEGA.enable)),
+    ],
+)
+def test_the_pictures_show_these_pins(name: str, wired: tuple[Pin | Pwm, ...]) -> None:
+    """In the order in which they are drawn, from top to bottom."""
+    picture = (ROOT / "docs" / "images" / f"wiring-{name}.svg").read_text(encoding="utf-8")
+    assert re.findall(r"\bD\d+\b", picture) == [one.arduino for one in wired]
 
 
 def test_the_guide_shows_the_other_drivers_pins() -> None:

@@ -8,20 +8,23 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from html import escape
 
 import numpy as np
 
 from greywhale.arm.parameters import JOINT_NAMES
 from greywhale.base.types import Floats
 from greywhale.board.calibrate.words import POSITIVE_WAYS
-from tools.generate.wiring_pictures import IMAGES, Picture, Point
+from tools import ROOT
 
-NAME = "joints-positive.svg"
+PICTURE = ROOT / "docs" / "images" / "joints-positive.svg"
+STYLE = 'font-family="DejaVu Sans, Arial, sans-serif" font-size="14"'
 ARM, BEFORE, WAY = "#1f618d", "#bbbbbb", "#c0392b"
 X, Y, Z = np.eye(3)  # along the arm at 0, up, to the arm's right
 WIDTH, HEIGHT = 260.0, 240.0  # of a view
 TURN = np.radians(40.0)
 DRAWN = np.linspace(0.0, 1.0, 13)
+Point = tuple[float, float]
 
 
 @dataclass(frozen=True)
@@ -53,6 +56,31 @@ def turned(point: Floats, axis: Floats, angle: float) -> Floats:
     along = axis * (axis @ point)
     found: Floats = along + (point - along) * np.cos(angle) + np.cross(axis, point) * np.sin(angle)
     return found
+
+
+class Picture:
+    """An SVG that grows element by element; coordinates in pixels, y down."""
+
+    def __init__(self, width: float, height: float, title: str) -> None:
+        size = f'width="{width:g}" height="{height:g}"'
+        self._parts = [
+            f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width:g} {height:g}" {size} {STYLE}>',
+            f"<title>{escape(title)}</title>",
+            f'<rect {size} fill="#ffffff"/>',
+        ]
+
+    def text(self, x: float, y: float, text: str, anchor: str = "start", colour: str = "#111") -> None:
+        self._parts.append(f'<text x="{x:g}" y="{y:g}" text-anchor="{anchor}" fill="{colour}">{escape(text)}</text>')
+
+    def wire(self, points: Sequence[Point], colour: str, width: float) -> None:
+        path = " ".join(f"{x:g},{y:g}" for x, y in points)
+        self._parts.append(f'<polyline points="{path}" fill="none" stroke="{colour}" stroke-width="{width:g}"/>')
+
+    def dot(self, x: float, y: float, colour: str) -> None:
+        self._parts.append(f'<circle cx="{x:g}" cy="{y:g}" r="4" fill="{colour}"/>')
+
+    def svg(self) -> str:
+        return "\n".join([*self._parts, "</svg>", ""])
 
 
 def draw() -> Picture:
@@ -90,9 +118,5 @@ def _draw_joint(drawn: Picture, view: View, centre: Point) -> None:
     drawn.text(x, y + 5, "+", "middle", WAY)
 
 
-def main() -> None:
-    (IMAGES / NAME).write_text(draw().svg(), encoding="utf-8")
-
-
 if __name__ == "__main__":
-    main()
+    PICTURE.write_text(draw().svg(), encoding="utf-8")

@@ -12,8 +12,7 @@ from greywhale.arm import Arm
 from greywhale.arm.export import urdf
 from greywhale.board.calibrate.words import POSITIVE_WAYS
 from greywhale.files.arm import default_arm
-from tools.generate.joint_pictures import NAME, VIEWS, draw, turned
-from tools.generate.wiring_pictures import IMAGES
+from tools.generate.joint_pictures import PICTURE, VIEWS, draw, turned
 
 TIP = np.array([0.1, 0.0, 0.0])  # in the frame of the hand
 SIDE = np.array([0.0, 0.0, 0.1])
@@ -69,4 +68,4 @@ def test_the_picture_turns_about_the_arms_own_axes_and_is_current() -> None:
     """If not: `python -m tools.generate.joint_pictures`."""
     axes = [one.attrib["xyz"] for one in ElementTree.fromstring(urdf(default_arm())).iter("axis")]
     assert [np.array(axis.split(), dtype=float).tolist() for axis in axes] == [view.axis.tolist() for view in VIEWS]
-    assert (IMAGES / NAME).read_text(encoding="utf-8") == draw().svg()
+    assert PICTURE.read_text(encoding="utf-8") == draw().svg()
