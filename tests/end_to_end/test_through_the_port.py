@@ -99,7 +99,7 @@ def test_a_killed_host_leaves_no_motor_on_and_a_bench_that_ends_no_link(start_be
         (("--firmware", "nowhere.hex"), "nowhere.hex"),
         (("--firmware", "pyproject.toml"), "pyproject.toml, line 1: this is no Intel HEX record"),
         (("--eeprom", "/proc/version"), "/proc/version: cannot be written"),
-        (("--speed", "7"), "invalid choice"),
+        (("--speed", "7"), "'7' is not one of '1', 'max'"),
     ],
 )
 def test_bad_options_are_one_sentence(

@@ -7,6 +7,8 @@ if __name__ == "__main__" and not sys.flags.safe_path:
 
 import json
 
+import click
+
 from greywhale.base.errors import UserError
 from greywhale_sim.faults import listed
 from greywhale_sim.serve import serve
@@ -14,7 +16,13 @@ from greywhale_sim.words import read
 
 
 def main() -> int:
-    options, as_json = read()
+    try:
+        options, as_json = read(sys.argv[1:])
+    except click.ClickException as error:
+        error.show()
+        return error.exit_code
+    except click.exceptions.Exit as end:  # after --help
+        return end.exit_code
     if "list" in options.faults:
         print(listed())
         return 0
