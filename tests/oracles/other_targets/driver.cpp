@@ -202,29 +202,6 @@ void sixteen_laws(Calls& calls, Results& results) {
   results.give(millivolts);
 }
 
-// The firmware's own law, step by step.
-void fuzzy_run(Calls& calls, Results& results) {
-  const std::vector<std::int32_t> columns = calls.array<std::int32_t>();
-  fuzzy_pdi::Coefficients law;
-  if (loop::compile(columns.data(), calls.number(), law) != fuzzy_pdi::Refusal::none)
-    throw std::runtime_error("a controller is refused.");
-  const std::vector<std::int16_t> leader = calls.array<std::int16_t>(), follower = calls.array<std::int16_t>();
-  const std::vector<std::uint16_t> limit = calls.array<std::uint16_t>();
-  std::vector<std::int16_t> u_fuzzy, volts_mv;
-  std::vector<std::int32_t> integral;
-  fuzzy_pdi::State state;
-  fuzzy_pdi::reset(law, state);
-  for (std::size_t n = 0; n < leader.size(); ++n) {
-    const fuzzy_pdi::Output out = fuzzy_pdi::step(law, state, leader[n], follower[n], limit[n]);
-    u_fuzzy.push_back(out.u_fuzzy);
-    volts_mv.push_back(out.volts_mv);
-    integral.push_back(state.integral);
-  }
-  results.give(u_fuzzy);
-  results.give(volts_mv);
-  results.give(integral);
-}
-
 void simulate_windows(Calls& calls, Results& results) {
   const std::vector<double> plants = calls.array<double>(), offsets = calls.array<double>(),
                             kicks = calls.array<double>();
@@ -270,9 +247,9 @@ void simulate_ideal(Calls& calls, Results& results) {
 }
 
 const std::map<std::string, void (*)(Calls&, Results&)> kCalls = {
-    {"leader_readings", leader_readings},   {"run", run},
-    {"sixteen_laws", sixteen_laws},         {"fuzzy_run", fuzzy_run},
-    {"simulate_windows", simulate_windows}, {"simulate_ideal", simulate_ideal},
+    {"leader_readings", leader_readings}, {"run", run},
+    {"sixteen_laws", sixteen_laws},       {"simulate_windows", simulate_windows},
+    {"simulate_ideal", simulate_ideal},
 };
 
 }  // namespace
