@@ -30,9 +30,13 @@ def random_states(count: int, seed: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 class Pinocchio:
-    def __init__(self, parameters: ArmParameters) -> None:
-        self.model = pinocchio.buildModelFromXML(urdf(parameters))
+    def __init__(self, text: str) -> None:
+        self.model = pinocchio.buildModelFromXML(text)
         self.data = self.model.createData()
+
+    @classmethod
+    def of(cls, parameters: ArmParameters) -> Pinocchio:
+        return cls(urdf(parameters))
 
     def mass_matrix(self, q: np.ndarray) -> np.ndarray:
         upper = np.triu(pinocchio.crba(self.model, self.data, q))

@@ -17,7 +17,7 @@ TARGET = Path(__file__).parents[1] / "arm" / "golden_dynamics.json"
 
 def main() -> None:
     parameters = arm_with_tip()
-    one, other = Pinocchio(parameters), MuJoCo(parameters)
+    one, other = Pinocchio.of(parameters), MuJoCo(parameters)
     states = []
     for q, v in zip(*random_states(40, seed=2), strict=True):
         mass, bias = one.mass_matrix(q), one.bias(q, v)
