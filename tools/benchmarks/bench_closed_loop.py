@@ -68,12 +68,6 @@ def run() -> list[Figure]:
         figures.append(Figure(f"closed loop, batch, {steps} steps a tick", batch[steps], "x real"))
     reach = max(batch.values())
     figures.append(at_least("closed loop, batch, fastest", reach, "x real", 40_000))
-
-    def threads(count: int) -> Callable[[], object]:
-        return lambda: experiment.run(controllers, plants, steps_per_tick=1, threads=count)
-
-    gain = _best(threads(1), time.perf_counter) / _best(threads(2), time.perf_counter)
-    figures.append(Figure("closed loop, two threads against one (wall clock)", gain, "x", "close to 2", gain > 1.7))
     return figures + _mujoco(reach) + _pinocchio() + _numba(reach, plants, experiment)
 
 
@@ -89,26 +83,23 @@ def _mujoco(ours: float) -> list[Figure]:
         sources = [str(PEERS / "mujoco_loop.cpp"), str(law / "fuzzy_pdi.cpp"), str(law / "compile.cpp")]
         headers = [f"-I{path}" for path in (folder / "include", law, ROOT / "firmware/lib/codes/src")]
         build = ["g++", "-std=c++17", "-O3", "-march=native", *headers, *sources, str(library)]
-        subprocess.run([*build, f"-Wl,-rpath,{folder}", "-pthread", "-o", str(program)], check=True)
+        subprocess.run([*build, f"-Wl,-rpath,{folder}", "-o", str(program)], check=True)
         model.write_text(mjcf(default_arm()), encoding="utf-8")
         without = Path(name) / "frictionless.xml"
         without.write_text(_without_friction(model.read_text(encoding="utf-8")), encoding="utf-8")
 
-        def seconds_a_second(xml: Path, count: int) -> float:
+        def seconds_a_second(xml: Path) -> float:
             taken = []
             for _ in range(3):
-                result = subprocess.run(
-                    [str(program), str(xml), "10", str(count)], check=True, capture_output=True, text=True
-                )
-                taken.append(float(result.stdout.split()[0]))
-            return 10.0 * count / min(taken)
+                result = subprocess.run([str(program), str(xml), "10"], check=True, capture_output=True, text=True)
+                taken.append(float(result.stdout))
+            return 10.0 / min(taken)
 
-        free, dry, two = seconds_a_second(without, 1), seconds_a_second(model, 1), seconds_a_second(without, 2)
+        free, dry = seconds_a_second(without), seconds_a_second(model)
     best = max(free, dry)
     return [
         Figure("MuJoCo from C++, implicitfast, no dry friction", free, "x real"),
         Figure("MuJoCo from C++, implicitfast, dry friction", dry, "x real"),
-        Figure("MuJoCo from C++, two threads, no dry friction", two, "x real"),
         at_least("batch against MuJoCo without friction", ours / best, "x", 20),
         *_mujoco_rollout(),
     ]

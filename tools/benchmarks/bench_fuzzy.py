@@ -17,7 +17,7 @@ from greywhale_sim.programs import load_elf
 from greywhale_sim.symbols import read_symbols
 from tools import ROOT
 from tools.benchmarks.figure import Figure, at_most
-from tools.support.fuzzy_on_board import IMAGES, FuzzyOnBoard
+from tools.support.fuzzy_on_board import FuzzyOnBoard
 from tools.support.fuzzy_search import LARGEST, Point, Random, climb
 
 TABLES = ROOT / "shared/fuzzy_tables"
@@ -28,7 +28,7 @@ DRAWS, CLIMBS = 20_000, 1_500
 
 
 def run() -> list[Figure]:
-    return [*_cycles(), *_float_cycles(), *_sizes(), *_planes(), *_least_exact()]
+    return [*_cycles(), *_float_cycles(), *_planes(), *_least_exact()]
 
 
 def _figures(name: str, costs: list[float], reach: str = "", aim: float | None = None) -> list[Figure]:
@@ -85,16 +85,6 @@ def _float_cycles() -> list[Figure]:
                 cycles.append(board.call(symbols[f"fuzzy_float_{name}"].address, 2_000_000))
         figures.append(Figure(f"fuzzy: {text}, worst of 21 x 21", max(cycles), "cycles"))
     return figures
-
-
-def _sizes() -> list[Figure]:
-    symbols = read_symbols(IMAGES["atmega2560"])
-    names = [name for name in symbols if "fuzzy_pdi" in name and symbols[name].in_flash]
-    code = sum(symbols[name].size for name in names) + 512  # the table has no size of its own
-    return [
-        Figure("fuzzy: flash, table included", code, "bytes"),
-        Figure("fuzzy: RAM of one joint, coefficients and memory", 4 * 9 + 6 + 9, "bytes"),
-    ]
 
 
 def _end(widths: tuple[int, ...], gain: float) -> int:

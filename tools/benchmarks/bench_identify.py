@@ -22,7 +22,6 @@ from tools.benchmarks.study import repeat
 from tools.support.recordings import Recorded, random_arm, record_three, table_of
 
 ARMS = 10
-PAPER_BUDGET = 510
 NAMES = ("before_tuning", "table_10")
 
 

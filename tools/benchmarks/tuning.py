@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
@@ -14,7 +13,6 @@ from greywhale.arm import ArmParameters
 from greywhale.base.types import Floats
 from greywhale.cli.story.practice import CHECK_SHARE, DESIGN_BUDGET, POSE, PRACTICE_S, tables
 from greywhale.files.arm import load_arm
-from greywhale.files.leader import load_leader
 from greywhale.files.log import Log
 from greywhale.files.trajectory import Trajectory
 from greywhale.identify.excite import design
@@ -23,9 +21,6 @@ from greywhale.protocol.table import ParameterTable
 from greywhale.tune.judge.floor import saturation_floor
 from tools.benchmarks.figure import Figure, at_most
 from tools.support.recordings import record
-
-# A folder of leader recordings (CSV: time_s, leader_0..3) to be judged on as well.
-LEADERS = os.environ.get("GREYWHALE_LEADERS", "")
 
 LOWER = 78.0  # %, of the total MSE
 OF_FLOOR = 1.15
@@ -40,13 +35,7 @@ SATURATED = 1e-4
 
 def motions() -> dict[str, Trajectory]:
     """What nothing was trained on."""
-    found = {"steps": steps(), "multi-steps": multi_steps(), "human reaches": human_reaches(1, 20.0)}
-    if LEADERS:
-        files = sorted(Path(LEADERS).glob("*.csv"))
-        if not files:
-            raise FileNotFoundError(f"GREYWHALE_LEADERS={LEADERS}: there is no .csv in this folder")
-        found |= {file.stem: load_leader(file) for file in files}
-    return found
+    return {"steps": steps(), "multi-steps": multi_steps(), "human reaches": human_reaches(1, 20.0)}
 
 
 def practised(arm: ArmParameters, folder: Path, seed: int) -> list[Log]:

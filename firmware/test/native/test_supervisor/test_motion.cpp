@@ -154,7 +154,7 @@ TEST_CASE("a joint that is held back is tried again, and let go when it moves or
 }
 
 TEST_CASE("what holds a load, moves slowly or starts late is not held back") {
-  Reading holds, slow, late, dips;
+  Reading holds, slow, late;
   holds.run(0, 60, always(0.5), always(2.9));
   slow.run(0, 10, [](double s) { return 0.4 * s - 2; }, always(5));
   late.run(0, 1, [](double s) { return s < 0.02 ? 0 : 6 * (s - 0.02); }, always(15));
