@@ -6,10 +6,10 @@ import json
 import subprocess
 from collections.abc import Sequence
 from pathlib import Path
-from types import TracebackType
-from typing import Any, Self
+from typing import Any
 
 from greywhale.arm import ArmParameters
+from greywhale.base.closing import Closing
 from tools.setup import page, page_modules
 from tools.site.bench_data import arm_numbers
 
@@ -17,7 +17,7 @@ HARNESS = Path(__file__).with_name("wasm") / "bench.mjs"
 TICK_SLICES = 4
 
 
-class PageBench:
+class PageBench(Closing):
     """A context: a bench with this arm, its power off."""
 
     def __init__(self, arm: ArmParameters, seed: int = 1) -> None:
@@ -26,12 +26,7 @@ class PageBench:
         self.call("put", arm_numbers(arm))
         self.call("start", seed)
 
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def close(self) -> None:
         assert self._node.stdin is not None
         self._node.stdin.close()
         self._node.wait()

@@ -9,9 +9,9 @@ from __future__ import annotations
 import itertools
 import os
 from pathlib import Path
-from types import TracebackType
-from typing import Any, Self
+from typing import Any
 
+from greywhale.base.closing import Closing
 from greywhale.base.errors import UserError
 from greywhale.board.device import Device
 from greywhale.board.record import Recording, record
@@ -31,7 +31,7 @@ SAVE_S = 1.0  # what a board takes at most to store a set
 _numbers = itertools.count()
 
 
-class LockStepBench:
+class LockStepBench(Closing):
     """A context; `port` names it for `Device` and for every verb, `command` takes what a running bench takes."""
 
     def __init__(self, options: BenchOptions, bench: Bench | None = None) -> None:
@@ -64,14 +64,6 @@ class LockStepBench:
     def close(self) -> None:
         LINES.pop(self.port, None)
         self.server.close()
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        self.close()
 
 
 class _Port:
