@@ -45,7 +45,7 @@ class ForeignArm:
     play: Floats
 
 
-def foreign_arm(seed: int, play: bool = True) -> ForeignArm:
+def foreign_arm(seed: int) -> ForeignArm:
     """The white box with masses, motors, friction, noise and play of its own; rigid gears, no Stribeck friction."""
     random = np.random.default_rng(7000 + seed)
     white = load_arm("white_box")
@@ -73,9 +73,7 @@ def foreign_arm(seed: int, play: bool = True) -> ForeignArm:
     pots = {"supply": 5.0, "joint": [{"noise": noise}] * JOINTS}
     data = white.model_dump() | {"name": f"foreign arm {seed}", "link": links, "joint": joints}
     data |= {"motor_equation": "physical", "follower_pots": pots, "leader_pots": pots}
-    width = random.uniform(*PLAY_RAD, JOINTS)
-    parameters = ArmParameters.model_validate(data, strict=False)
-    return ForeignArm(parameters, width if play else np.zeros(JOINTS))
+    return ForeignArm(ArmParameters.model_validate(data, strict=False), random.uniform(*PLAY_RAD, JOINTS))
 
 
 class MuJoCoPlant:
