@@ -12,13 +12,12 @@ from greywhale.adapt.decide import ENOUGH, Adaptation, Outcome
 from greywhale.adapt.foresee import LEAD, foresee, judged_of
 from greywhale.adapt.gain import Scale
 from greywhale.adapt.propose import Proposal, Task, work_on
-from greywhale.arm.parameters import Tip
 from greywhale.base.types import Controllers
-from greywhale.files.arm import default_arm
 from greywhale.protocol.table import CONTROLLER_COLUMNS
 from greywhale.simulate.controllers import controllers_of
 from tests.adapt.conftest import TABLE
 from tests.adapt.simulated import Work, work_for
+from tests.support.arms import make_arm
 
 pytestmark = pytest.mark.slow
 BEFORE = controllers_of(TABLE)
@@ -129,7 +128,7 @@ def test_a_load_taken_up_with_the_set_from_the_start_is_no_fault_of_the_next(
     adaptation: Adaptation, work: Work
 ) -> None:
     propose(adaptation, work, 1.6)
-    work.arm = default_arm().model_copy(update={"tip": Tip(mass=0.2)})
+    work.arm = make_arm(tip={"mass": 0.2})
     work_for(adaptation, work, 1)
     for stretch in work.piece(adaptation.running)[: LEAD + 1]:
         adaptation.take(stretch)
@@ -141,7 +140,7 @@ def test_a_load_taken_up_is_no_fault_of_the_set_that_was_kept(adaptation: Adapta
     propose(adaptation, work, 1.2)
     work_for(adaptation, work, 6)
     assert [one.outcome for one in adaptation.trials] == [Outcome.KEPT]
-    work.arm = default_arm().model_copy(update={"tip": Tip(mass=0.3)})
+    work.arm = make_arm(tip={"mass": 0.3})
     for _ in range(3):
         for stretch in work.piece(adaptation.running):
             adaptation.take(stretch)

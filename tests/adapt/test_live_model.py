@@ -11,11 +11,11 @@ from greywhale.adapt.foresee import foresee, judged_of
 from greywhale.adapt.live_model import PLANTS, LiveModel
 from greywhale.adapt.stretch import Stretch
 from greywhale.arm import ArmParameters
-from greywhale.arm.parameters import Tip
 from greywhale.files.arm import default_arm
 from greywhale.simulate.controllers import controllers_of
 from tests.adapt.conftest import TABLE
 from tests.adapt.simulated import Work
+from tests.support.arms import make_arm
 from tools.support.worker import grown_friction
 
 pytestmark = pytest.mark.slow
@@ -48,7 +48,7 @@ def test_friction_that_grew_is_found(grown: list[Stretch]) -> None:
 
 
 def test_a_load_that_was_taken_up_is_weighed() -> None:
-    stretches = half_minute(default_arm().model_copy(update={"tip": Tip(mass=0.3)}))
+    stretches = half_minute(make_arm(tip={"mass": 0.3}))
     refitted = LIVE.refit(stretches, TABLE, 1)
     assert refitted.changes()["arm.tip"] == pytest.approx(0.3, abs=0.03)
     assert missed(LIVE, stretches) > 0.3

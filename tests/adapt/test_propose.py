@@ -11,7 +11,6 @@ import pytest
 from greywhale.adapt import propose as propose_module
 from greywhale.adapt.decide import Adaptation
 from greywhale.adapt.propose import EVERY, FASTER, NEWEST, Task, motion_of, propose
-from greywhale.arm.parameters import Tip
 from greywhale.base.types import Controllers
 from greywhale.files.arm import default_arm
 from greywhale.files.trajectory import Trajectory
@@ -21,6 +20,7 @@ from greywhale.tune.model import Model
 from tests.adapt.conftest import TABLE
 from tests.adapt.simulated import Work, work_for
 from tests.adapt.test_decide import stiffer
+from tests.support.arms import make_arm
 
 pytestmark = pytest.mark.slow
 
@@ -88,7 +88,7 @@ def test_what_was_seen_before_a_load_was_taken_up_is_left_out(
 ) -> None:
     search(controllers_of(TABLE), monkeypatch)
     work_for(adaptation, work, 3)
-    work.arm = default_arm().model_copy(update={"tip": Tip(mass=0.3)})
+    work.arm = make_arm(tip={"mass": 0.3})
     work_for(adaptation, work, 4)
     task = adaptation.task()
     assert task is not None

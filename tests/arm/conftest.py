@@ -1,41 +1,19 @@
-"""Arms for the tests: shipped ones with single values changed."""
+"""Arms for the tests, and parts of them."""
 
 from __future__ import annotations
 
-import copy
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from typing import Any
 
 import pytest
 
 from greywhale.arm import ArmParameters
-from greywhale.base.formats import toml_file
-from greywhale.files.arm import load_arm
-
-Change = Callable[..., ArmParameters]
-
-
-def _merge(target: dict[str, Any], changes: Mapping[str, Any]) -> None:
-    for key, value in changes.items():
-        if isinstance(value, Mapping):
-            _merge(target[key], value)
-        else:
-            target[key] = value
+from tests.support import arms
 
 
 @pytest.fixture
-def make_arm() -> Change:
-    """The named arm, changed and validated: make_arm("default", gravity=0.0, every_joint={...}, joint_3={...})."""
-
-    def make(name: str = "default", every_joint: Mapping[str, Any] | None = None, **changes: Any) -> ArmParameters:
-        data = copy.deepcopy(load_arm(name).model_dump(mode="json"))
-        for index in range(4):
-            _merge(data["joint"][index], every_joint or {})
-            _merge(data["joint"][index], changes.pop(f"joint_{index}", {}))
-        _merge(data, changes)
-        return toml_file.check(data, ArmParameters, name)
-
-    return make
+def make_arm() -> Callable[..., ArmParameters]:
+    return arms.make_arm
 
 
 @pytest.fixture

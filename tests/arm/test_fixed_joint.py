@@ -11,7 +11,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from greywhale import _native
-from greywhale.arm import Arm, ArmParameters
+from greywhale.arm import Arm
 from greywhale.arm.export import JOINT_IDS, LINK_NAMES, mjcf, urdf
 from greywhale.arm.plants import plant_row, rigid_joints
 from greywhale.base.errors import UserError
@@ -21,19 +21,14 @@ from greywhale.motion import human_reaches
 from greywhale.protocol.joints import unused
 from greywhale.simulate import Experiment
 from greywhale.tune.judge.floor import saturation_floor
+from tests.support.arms import with_joints
 
 SETS = [(0,), (3,), (1, 2), (0, 2, 3)]
 
 
-def with_joints(make_arm: Any, used: tuple[int, ...], name: str = "default", **changes: Any) -> ArmParameters:
-    arm: ArmParameters = make_arm(name, **changes, **{f"joint_{joint}": {"fixed": True} for joint in unused(used)})
-    assert arm.joints_in_use == used
-    return arm
-
-
 @pytest.mark.parametrize("used", SETS)
-def test_it_stays_exactly_where_it_is_whatever_the_others_do(make_arm: Any, used: tuple[int, ...]) -> None:
-    arm = Arm(with_joints(make_arm, used))
+def test_it_stays_exactly_where_it_is_whatever_the_others_do(used: tuple[int, ...]) -> None:
+    arm = Arm(with_joints(used))
     random = np.random.default_rng(1)
     travel = np.zeros(4)
     for _ in range(400):
@@ -46,7 +41,7 @@ def test_it_stays_exactly_where_it_is_whatever_the_others_do(make_arm: Any, used
 
 
 @pytest.mark.parametrize("used", SETS)
-def test_the_rest_moves_as_the_arm_with_its_row_and_column_removed(make_arm: Any, used: tuple[int, ...]) -> None:
+def test_the_rest_moves_as_the_arm_with_its_row_and_column_removed(used: tuple[int, ...]) -> None:
     """Rigid gears and no dry friction: an ordinary differential equation for the joints in use alone."""
     whole = load_arm("white_box")
     body, kept = Arm(whole).body, list(used)
@@ -62,15 +57,15 @@ def test_the_rest_moves_as_the_arm_with_its_row_and_column_removed(make_arm: Any
         return np.concatenate([v[kept], a])
 
     exact = solve_ivp(motion, (0, 0.5), np.zeros(2 * len(kept)), rtol=1e-10, atol=1e-12).y[: len(kept), -1]
-    arm = Arm(with_joints(make_arm, used, "white_box"), longest_step=2e-6)
+    arm = Arm(with_joints(used, "white_box"), longest_step=2e-6)
     found = arm.step(volts, 0.5)
     assert np.abs(exact).min() > 0.02
     np.testing.assert_allclose(found[kept], exact, rtol=0, atol=2e-5)
 
 
 @pytest.mark.parametrize("worn", [False, True])
-def test_batch_single_run_and_ideal_law_hold_it(make_arm: Any, worn: bool) -> None:
-    arm = with_joints(make_arm, (0, 1), "worn" if worn else "default")
+def test_batch_single_run_and_ideal_law_hold_it(worn: bool) -> None:
+    arm = with_joints((0, 1), "worn" if worn else "default")
     assert rigid_joints(plant_row(arm)).tolist() == [False, False, True, True]
     experiment = Experiment(human_reaches(4, 3.0), arm, noise=False)
     batch, exact = experiment.run(every=1, steps_per_tick=4), experiment.run_exact(every=1)
@@ -86,8 +81,8 @@ def test_batch_single_run_and_ideal_law_hold_it(make_arm: Any, worn: bool) -> No
     assert (floor.mse[:2] > 0.0).all()
 
 
-def test_windows_hold_it_bit_by_bit(make_arm: Any) -> None:
-    arm, rows, substeps, h = with_joints(make_arm, (1, 3)), 50, 4, 0.25e-3
+def test_windows_hold_it_bit_by_bit() -> None:
+    arm, rows, substeps, h = with_joints((1, 3)), 50, 4, 0.25e-3
     volts = np.random.default_rng(5).uniform(-15, 15, (rows * substeps, 4))
     window: dict[str, Any] = {"first": np.zeros(1, dtype=np.int64), "angles": np.array([[0.0, 0.2, 0.0, 0.4]])}
     window |= {name: np.zeros((1, 4)) for name in ("offsets", "kicks", "velocities", "sides", "places")}
@@ -97,8 +92,8 @@ def test_windows_hold_it_bit_by_bit(make_arm: Any) -> None:
     assert np.ptp(angles[:, [1, 3]], axis=0).min() > 0.001
 
 
-def test_an_arm_file_needs_no_more_than_the_word(tmp_path: Path, make_arm: Any) -> None:
-    arm = with_joints(make_arm, (0, 1))
+def test_an_arm_file_needs_no_more_than_the_word(tmp_path: Path) -> None:
+    arm = with_joints((0, 1))
     path = tmp_path / "arm.toml"
     text = arm_toml(arm, "two joints")
     path.write_text(text)
@@ -114,8 +109,8 @@ def test_an_arm_needs_a_joint_that_moves(make_arm: Any) -> None:
         make_arm(every_joint={"fixed": True})
 
 
-def test_exports_weld_it(make_arm: Any) -> None:
-    arm = with_joints(make_arm, (0, 2))
+def test_exports_weld_it() -> None:
+    arm = with_joints((0, 2))
     kinds = [joint.get("type") for joint in xml.fromstring(urdf(arm)).iter("joint")]
     assert kinds == ["revolute", "fixed", "revolute", "fixed"]
     model = xml.fromstring(mjcf(arm))

@@ -17,6 +17,7 @@ from greywhale.base.errors import UserError
 from greywhale.cli.entry import run
 from greywhale.files.arm import default_arm, load_arm
 from tests.arm.reframed import reframed
+from tests.support.arms import with_joints
 
 SUPPLY = default_arm().drive.supply
 
@@ -143,8 +144,7 @@ def test_the_verb_writes_an_arm_that_other_verbs_read_and_no_file_twice(
 @pytest.mark.parametrize(("count", "seed"), [(1, None), (1, 1), (2, 2), (3, None)])
 def test_a_chain_that_ends_earlier_is_an_arm_with_fewer_joints(tmp_path: Path, count: int, seed: int | None) -> None:
     """The exported arm's welds are not in the URDF's chain any more; what moves is the same."""
-    joints = [one.model_copy(update={"fixed": number >= count}) for number, one in enumerate(default_arm().joint)]
-    arm = default_arm().model_copy(update={"joint": tuple(joints)})
+    arm = with_joints(tuple(range(count)))
     text = urdf(arm) if seed is None else welded(reframed(default_arm(), seed), count)
     found = import_urdf(written(tmp_path, text), SUPPLY)
     assert found.arm.joints_in_use == tuple(range(count))

@@ -13,6 +13,7 @@ from greywhale.arm.from_plant import arm_of, known_before
 from greywhale.arm.plants import PLANT_COLUMNS, plant_row
 from greywhale.files.arm import load_arm
 from greywhale.protocol.firmware import JOINTS
+from tests.support.arms import make_arm
 
 
 def named(arm: ArmParameters) -> dict[str, float]:
@@ -62,15 +63,12 @@ def identified(arm: ArmParameters) -> ArmParameters:
     return arm_of(arm, plant, np.full(JOINTS, 0.02), "found", "a test", np.full(JOINTS, 3e-3))
 
 
-def with_a_weak_supply(arm: ArmParameters) -> ArmParameters:
-    data = arm.model_dump()
-    data["drive"] |= {"resistance": 0.3, "supply_resistance": 0.2}
-    return ArmParameters.model_validate(data, strict=False)
+WEAK_SUPPLY = {"resistance": 0.3, "supply_resistance": 0.2}
 
 
 @pytest.mark.parametrize("name", ["default", "white_box", "two_joints"])
 def test_what_is_known_before_is_what_an_identification_leaves(name: str) -> None:
-    arm = with_a_weak_supply(load_arm(name))
+    arm = make_arm(name, drive=WEAK_SUPPLY)
     assert known_before(identified(arm)) == known_before(arm)
 
 
@@ -83,7 +81,7 @@ def leaves(data: Any, path: str = "") -> dict[str, Any]:
 
 
 def test_all_that_an_identification_may_change_is_left_out() -> None:
-    arm = with_a_weak_supply(load_arm("default"))
+    arm = make_arm(drive=WEAK_SUPPLY)
     before, after = leaves(arm.model_dump()), leaves(identified(arm).model_dump())
     changed = {path for path in before if before[path] != after.get(path)}
     assert {".drive.resistance", ".drive.supply_resistance", ".follower_pots.joint.0.lag"} <= changed

@@ -8,15 +8,14 @@ import pytest
 from greywhale.arm import Arm, ArmParameters
 from greywhale.arm.printed import BODY_ERRATA, ERRATA, PrintedBody, motor_equation
 from greywhale.base.errors import UserError
-from greywhale.files.arm import load_arm
+from tests.support.arms import make_arm
 
 KEEP_ENERGY = ("E2", "E8")
 
 
 @pytest.fixture(scope="module")
 def arm() -> ArmParameters:
-    plain = load_arm("white_box")
-    return plain.model_copy(update={"tip": plain.tip.model_copy(update={"mass": 0.07})})
+    return make_arm("white_box", tip={"mass": 0.07})
 
 
 def states(count: int = 200) -> zip[tuple[np.ndarray, np.ndarray]]:

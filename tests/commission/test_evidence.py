@@ -7,7 +7,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from greywhale.arm import ArmParameters
 from greywhale.arm.plants import column, plant_row
 from greywhale.commission.evidence import failing_plants, to_fit, to_validate
 from greywhale.commission.journal import CommissioningJournal
@@ -18,21 +17,14 @@ from greywhale.files.log import read_log
 from greywhale.simulate.controllers import controllers_of
 from tests.commission.simulated import ROOM, SimulatedRig
 from tests.commission.test_trials import BETTER, play, play_before, stiffer
+from tests.support.arms import make_arm
 
 pytestmark = pytest.mark.slow
-GAP = 0.02
 JOINT = 2
 
 
-def loose_arm() -> ArmParameters:
-    """The default arm with a gap on one joint that its model does not know of."""
-    data = default_arm().model_dump()
-    data["joint"][JOINT]["gear"]["half_gap"] = GAP
-    return ArmParameters.model_validate(data, strict=False)
-
-
 def test_the_plant_that_shows_the_hunting_is_the_model_with_one_change(tmp_path: Path) -> None:
-    rig = SimulatedRig(loose_arm())
+    rig = SimulatedRig(make_arm(joint_2={"gear": {"half_gap": 0.02}}))
     with CommissioningJournal(tmp_path, {}, resume=False) as journal:
         trials = Trials(journal, check_motion(ROOM), rig.before)
         play_before(trials, rig)

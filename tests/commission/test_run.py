@@ -21,6 +21,7 @@ from greywhale.files.model import arm_toml
 from greywhale.protocol.table import ParameterTable
 from greywhale.simulate.controllers import controllers_of
 from tests.commission.simulated import SimulatedRig, in_no_time, options_in
+from tests.support.arms import make_arm
 from tests.tune.models import write_model
 
 pytestmark = pytest.mark.slow
@@ -124,10 +125,7 @@ def test_joints_that_follow_well_or_gain_no_more_get_no_more_trials(hoped: list[
 
 
 def test_a_model_of_another_arm_is_refused_before_it_moves_the_board(rig: SimulatedRig, options: Make) -> None:
-    arm = default_arm()
-    joints = [joint.model_dump() for joint in arm.joint]
-    joints[1]["motor"]["resistance"] *= 5.0
-    other = arm.model_validate(arm.model_dump() | {"joint": joints}, strict=False)
+    other = make_arm(joint_1={"motor": {"resistance": 5.0 * default_arm().joint[1].motor.resistance}})
     path = write_model(options().out.parent / "other.toml", other)
     with pytest.raises(UserError, match="other.toml .*: joint 1"):
         commission(options(model=path))

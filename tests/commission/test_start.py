@@ -8,7 +8,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from greywhale.arm import ArmParameters
 from greywhale.base.errors import UserError
 from greywhale.commission.journal import CommissioningJournal
 from greywhale.commission.start import refuse_stuck, refuse_uncalibrated, shares_moved
@@ -17,20 +16,7 @@ from greywhale.files.log import Log
 from greywhale.files.log.layout import Origin
 from greywhale.protocol.table import ParameterTable
 from tests.commission.simulated import ROOM, SimulatedRig
-
-
-def with_joint(arm: ArmParameters, joint: int, part: str, **values: float) -> ArmParameters:
-    data = arm.model_dump()
-    data["joint"][joint][part] |= values
-    return ArmParameters.model_validate(data, strict=False)
-
-
-def with_pot(arm: ArmParameters, joint: int, **values: float) -> ArmParameters:
-    data = arm.model_dump()
-    pots = list(data["follower_pots"]["joint"])
-    pots[joint] = pots[joint] | values
-    data["follower_pots"]["joint"] = pots
-    return ArmParameters.model_validate(data, strict=False)
+from tests.support.arms import make_arm
 
 
 @pytest.fixture
@@ -52,14 +38,13 @@ def test_an_arm_that_follows_is_moved_once(rig: SimulatedRig, book: Commissionin
 
 def test_friction_that_holds_a_joint_gets_a_larger_motion(book: CommissioningJournal) -> None:
     held = 8.0 * default_arm().actuator(3).torque_per_volt  # V that friction takes
-    weak = with_joint(default_arm(), 3, "friction", coulomb=held, breakaway=held)
-    rig = SimulatedRig(weak)
+    rig = SimulatedRig(make_arm(joint_3={"friction": {"coulomb": held, "breakaway": held}}))
     stuck(rig, book)
     assert len(rig.played) == 2
 
 
 def test_a_joint_that_cannot_move_is_named(book: CommissioningJournal) -> None:
-    blocked = with_joint(default_arm(), 2, "friction", coulomb=50.0, breakaway=50.0)
+    blocked = make_arm(joint_2={"friction": {"coulomb": 50.0, "breakaway": 50.0}})
     with pytest.raises(UserError, match=r"joint 2 \(wrist pitch\) did not move") as caught:
         stuck(SimulatedRig(blocked), book)
     assert "joint 1" not in caught.value.message
@@ -77,7 +62,7 @@ def test_a_joint_that_runs_the_wrong_way_is_named() -> None:
 def test_a_joint_that_was_never_calibrated_is_named() -> None:
     """The arm file says where its potentiometer stands; the board still has the default."""
     refuse_uncalibrated(default_arm(), ParameterTable.defaults())
-    arm = with_pot(default_arm(), 1, centre=0.6)
+    arm = make_arm(follower_pots={"joint": {1: {"centre": 0.6}}})
     with pytest.raises(UserError, match=r"joint 1 \(shoulder pitch\) was never calibrated: .* 0.60 rad"):
         refuse_uncalibrated(arm, ParameterTable.defaults())
     table = ParameterTable.defaults()
@@ -89,6 +74,6 @@ def test_a_joint_that_was_never_calibrated_is_named() -> None:
 
 def test_another_potentiometer_or_supply_than_the_arm_files_is_refused() -> None:
     with pytest.raises(UserError, match="follower potentiometer 2 turns 4.71 rad"):
-        refuse_uncalibrated(with_pot(default_arm(), 2, track=4.71), ParameterTable.defaults())
+        refuse_uncalibrated(make_arm(follower_pots={"joint": {2: {"track": 4.71}}}), ParameterTable.defaults())
     with pytest.raises(UserError, match="supply_mv says 9 V"):
         refuse_uncalibrated(default_arm(), ParameterTable.defaults().with_raw({"supply_mv": 9000}))

@@ -8,17 +8,17 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from greywhale.arm.parameters import JOINT_NAMES, Stops
+from greywhale.arm.parameters import JOINT_NAMES
 from greywhale.base.errors import UserError
 from greywhale.cli.story import BenchProcess, DemoOptions, DemoResult, run, story
 from greywhale.cli.story.recorder import record_motion
 from greywhale.commission import motions, search
-from greywhale.files.arm import default_arm
 from greywhale.files.leader import save_leader
 from greywhale.files.log import Log
 from greywhale.files.model import arm_toml
 from greywhale.files.trajectory import Trajectory
 from greywhale_sim.words import lock_step
+from tests.support.arms import make_arm, with_joints
 from tests.support.demo import in_this_process
 from tests.support.tuning import judge_nothing, shorten
 from tools import ROOT
@@ -97,11 +97,8 @@ def test_the_demo_shows_a_controller_that_it_is_given_on_the_joints_that_there_a
 @pytest.mark.slow
 def test_why_the_arms_are_not_at_the_start_of_a_motion_is_told(tmp_path: Path) -> None:
     """A motion beyond the follower's stops, and potentiometers that the board does not know, are no faults."""
-    arm = default_arm()
-    joints = tuple(one.model_copy(update={"stops": Stops(min=-1.0, max=1.0)}) for one in arm.joint)
-    pots = tuple(one.model_copy(update={"centre": 0.3}) for one in arm.follower_pots.joint)
-    bank = arm.follower_pots.model_copy(update={"joint": pots})
-    arm = arm.model_copy(update={"joint": joints, "follower_pots": bank})
+    stops = {"stops": {"min": -1.0, "max": 1.0}}
+    arm = make_arm(every_joint=stops, follower_pots={"joint": {"centre": 0.3}})
     (tmp_path / "arm.toml").write_text(arm_toml(arm, "Other potentiometers."))
     motions = {
         "far.csv": (1.5, "far.csv: .* joint 2 at 1.50 rad, .* 1.00"),
@@ -116,10 +113,8 @@ def test_why_the_arms_are_not_at_the_start_of_a_motion_is_told(tmp_path: Path) -
 
 
 def arm_with_joints(count: int, folder: Path) -> Path:
-    arm = default_arm()
-    joints = tuple(one.model_copy(update={"fixed": number >= count}) for number, one in enumerate(arm.joint))
     path = folder / "arm.toml"
-    path.write_text(arm_toml(arm.model_copy(update={"joint": joints}), "Fewer joints."))
+    path.write_text(arm_toml(with_joints(tuple(range(count))), "Fewer joints."))
     return path
 
 

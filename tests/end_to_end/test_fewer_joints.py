@@ -12,12 +12,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from greywhale.arm import ArmParameters
 from greywhale.base.errors import BAD_USAGE
 from greywhale.board.device import Device
 from greywhale.board.upload import read_parameters
 from greywhale.cli.entry import run
-from greywhale.files.arm import load_arm
 from greywhale.files.leader import save_leader
 from greywhale.files.log import read_log
 from greywhale.files.model import arm_toml
@@ -25,6 +23,7 @@ from greywhale.motion import human_reaches
 from greywhale.protocol.schema import Board
 from greywhale.simulate.closed_loop import ClosedLoop, Result
 from greywhale.tune.model import load_model
+from tests.support.arms import with_joints
 from tests.support.tuning import judge_nothing, shorten
 from tools.support.hands import SECOND_DEG, Hands, bench_of, mounted_anyhow, run_calibrate
 
@@ -41,11 +40,6 @@ def ask(capsys: pytest.CaptureFixture[str], *words: str) -> dict[str, Any]:
     assert code == 0, told.err
     found: dict[str, Any] = json.loads(told.out)
     return found
-
-
-def two_joints_of(arm: ArmParameters) -> ArmParameters:
-    joints = [one.model_copy(update={"fixed": joint in IDLE}) for joint, one in enumerate(arm.joint)]
-    return arm.model_copy(update={"joint": tuple(joints)})
 
 
 def full_duties_of_every_loop(monkeypatch: pytest.MonkeyPatch) -> list[int]:
@@ -72,10 +66,10 @@ def test_two_joints_on_a_nano_from_the_box_to_a_following_arm(
     shorten(monkeypatch)
     judge_nothing(monkeypatch)
     largest = full_duties_of_every_loop(monkeypatch)
-    (tmp_path / "white.toml").write_text(arm_toml(two_joints_of(load_arm("white_box")), "Two joints."))
+    (tmp_path / "white.toml").write_text(arm_toml(with_joints((0, 2), "white_box"), "Two joints."))
     save_leader(tmp_path / "motion.csv", human_reaches(1, 5.0))
     options = ("--board", "nano", "--leader", str(tmp_path / "motion.csv"))
-    with bench_of(two_joints_of(mounted_anyhow(11)), tmp_path, *options) as bench:
+    with bench_of(with_joints((0, 2), mounted_anyhow(11)), tmp_path, *options) as bench:
         port = ("--port", bench.port)
         done = run_calibrate(Hands(bench), tmp_path, "--joints", "0,2", "--second", SECOND)
         assert done.code == 0, done.said

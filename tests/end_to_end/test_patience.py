@@ -19,25 +19,19 @@ from greywhale.protocol.schema import Fault, State
 from greywhale.protocol.table import ParameterTable
 from greywhale.tune.travel import travel_of
 from tests.end_to_end.test_lock_step import set_parameters
+from tests.support.arms import make_arm
 
 pytestmark = pytest.mark.slow
-PLAY_RAD, FRICTION_V, HEAVY_KG, GRIPPED_KG, LEANS_V = 0.05, 2.0, 0.9, 0.5, 3.0
+PLAY_RAD, FRICTION_V, GRIPPED_KG, LEANS_V = 0.05, 2.0, 0.5, 3.0
+HEAVY = make_arm(tip={"mass": 0.9})
 STALLED_S = 4
 
 
 def worn() -> ArmParameters:
     """The default arm with 50 mrad of play and dry friction of 2 V in each joint."""
-    content = load_arm("default").model_dump()
-    for joint in range(4):
-        torque = FRICTION_V * load_arm("default").actuator(joint).torque_per_volt
-        content["joint"][joint]["friction"] |= {"coulomb": torque, "breakaway": 1.2 * torque}
-        content["joint"][joint]["gear"] |= {"half_gap": PLAY_RAD / 2}
-    return ArmParameters.model_validate(content)
-
-
-def heavy() -> ArmParameters:
-    arm = load_arm("default")
-    return arm.model_copy(update={"tip": arm.tip.model_copy(update={"mass": HEAVY_KG})})
+    torques = [FRICTION_V * load_arm("default").actuator(joint).torque_per_volt for joint in range(4)]
+    friction = {number: {"friction": {"coulomb": one, "breakaway": 1.2 * one}} for number, one in enumerate(torques)}
+    return make_arm(every_joint={"gear": {"half_gap": PLAY_RAD / 2}}, joint=friction)
 
 
 def travel(arm: ArmParameters) -> dict[str, int]:
@@ -74,9 +68,9 @@ def test_an_arm_with_play_and_friction_follows_a_person(lock_step: Any, tmp_path
 
 
 def test_a_heavy_arm_is_lifted_and_held(lock_step: Any, tmp_path: Path) -> None:
-    (tmp_path / "arm.toml").write_text(to_toml(heavy(), {}), encoding="utf-8")
+    (tmp_path / "arm.toml").write_text(to_toml(HEAVY, {}), encoding="utf-8")
     host = lock_step(arm=tmp_path / "arm.toml")
-    set_parameters(host, travel(heavy()))
+    set_parameters(host, travel(HEAVY))
     host.follow()
     host.bench.leader.lead(np.array([0.0, -0.7, -0.4, 0.0]))
     host.run(2.0)

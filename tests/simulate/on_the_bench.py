@@ -18,6 +18,7 @@ from greywhale.simulate import Timing
 from greywhale_sim.assemble import BenchOptions, build_board, wiring_of
 from greywhale_sim.bench import SLICE_CYCLES, SLICE_S, Bench
 from greywhale_sim.leader import LeaderPlayer
+from tests.support.arms import make_arm
 
 TICK_CYCLES = 16000
 ADCSRA = 0x7A
@@ -44,12 +45,8 @@ class Recording:
 
 def quiet(parameters: ArmParameters) -> ArmParameters:
     """The same arm with potentiometers that make no noise."""
-    banks = {}
-    for name in ("leader_pots", "follower_pots"):
-        bank = getattr(parameters, name)
-        pots = tuple(pot.model_copy(update={"noise": 0.0}) for pot in bank.joint)
-        banks[name] = bank.model_copy(update={"joint": pots})
-    return parameters.model_copy(update=banks)
+    silent = {"joint": {"noise": 0.0}}
+    return make_arm(parameters, leader_pots=silent, follower_pots=silent)
 
 
 def record(parameters: ArmParameters, motion: Trajectory, seconds: float, board: str = "mega") -> Recording:

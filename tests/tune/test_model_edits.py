@@ -19,6 +19,7 @@ from greywhale.files.model import to_toml
 from greywhale.tune.model import load_model
 from greywhale.tune.model_checks import identification_of
 from greywhale.tune.model_edits import UNSEALED, doubt_edits
+from tests.support.arms import make_arm
 from tests.tune.models import facts_of, write_model
 
 
@@ -107,10 +108,7 @@ def test_a_model_of_before_the_seals_is_taken_and_said_to_be_unchecked(tmp_path:
 
 
 def test_a_gap_of_next_to_nothing_is_none(tmp_path: Path) -> None:
-    data = default_arm().model_dump()
-    for joint in data["joint"]:
-        joint["gear"] |= {"half_gap": 0.0}
-    arm = ArmParameters.model_validate(data, strict=False)
+    arm = make_arm(every_joint={"gear": {"half_gap": 0.0}})
     facts = facts_of(arm)
     gap = {"name": "joint2.gap", "unit": "rad", "value": 5e-10, "standard_deviation": 1e-3}
     covariance = np.zeros((len(facts["parameter"]) + 1,) * 2)

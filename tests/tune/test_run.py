@@ -26,6 +26,7 @@ from greywhale.tune.model import Model, load_model
 from greywhale.tune.request import TuningRequest
 from greywhale.tune.search.lockstep import KEPT
 from greywhale.tune.search.objective import Objective
+from tests.support.arms import make_arm
 from tests.support.interrupts import ctrl_c_at
 from tests.support.tuning import judge_nothing, shorten
 
@@ -255,11 +256,8 @@ def test_where_the_arm_itself_will_judge_unrest_on_the_model_counts_less(
     assert usual - on_trial == pytest.approx(default.UNFIT + 1.0 - default.ON_TRIAL)
 
 
-def test_silent_potentiometers_get_the_noise_of_ordinary_ones(model: Model) -> None:
-    bank = model.arm.follower_pots
-    quiet = bank.model_copy(update={"joint": tuple(pot.model_copy(update={"noise": 0.0}) for pot in bank.joint)})
-    loud = bank.model_copy(update={"joint": tuple(pot.model_copy(update={"noise": 0.01}) for pot in bank.joint)})
-    arm = with_usual_noise(model.arm.model_copy(update={"follower_pots": quiet, "leader_pots": loud}))
+def test_silent_potentiometers_get_the_noise_of_ordinary_ones() -> None:
+    arm = with_usual_noise(make_arm(follower_pots={"joint": {"noise": 0.0}}, leader_pots={"joint": {"noise": 0.01}}))
     assert [pot.noise for pot in arm.follower_pots.joint] == [USUAL_NOISE_V] * 4
     assert [pot.noise for pot in arm.leader_pots.joint] == [0.01] * 4
 

@@ -10,17 +10,17 @@ import pytest
 from greywhale.arm import ArmParameters
 from greywhale.arm.body import Body
 from greywhale.arm.plants import plant_row
-from greywhale.files.arm import default_arm, load_arm
+from greywhale.files.arm import load_arm
 from greywhale.protocol.table import ParameterTable
 from greywhale.tune.model import load_model
 from greywhale.tune.travel import LEAST_MARGIN, LEAST_V, MOST_OF_SUPPLY, Travel, travel_of
+from tests.support.arms import make_arm
 from tests.tune.models import write_model
 
 
 def with_tip(mass: float) -> ArmParameters:
     """The default arm with a load, kg."""
-    arm = default_arm()
-    return arm.model_copy(update={"tip": arm.tip.model_copy(update={"mass": mass})})
+    return make_arm(tip={"mass": mass})
 
 
 def travel(folder: Path, arm: ArmParameters, deviation: float = 0.03, **changes: int) -> Travel:

@@ -9,15 +9,13 @@ from hypothesis import strategies as st
 
 from greywhale.arm.make.motor import DataSheet, contradiction, tables
 from greywhale.arm.parameters import ArmParameters
-from greywhale.files.arm import default_arm
+from tests.support.arms import make_arm
 
 SHEET = DataSheet(12.0, 100.0, 1.5, 2.0, 6.0, 0.1, 5e-7)
 
 
 def with_motor(sheet: DataSheet) -> ArmParameters:
-    data = default_arm().model_dump()
-    data["joint"][0].update(tables(sheet))
-    return ArmParameters.model_validate(data, strict=False)
+    return make_arm(joint_0=tables(sheet))
 
 
 @given(st.floats(0.05, 20.0), st.floats(0.2, 20.0), st.floats(0.1, 60.0), st.floats(0.01, 0.3), st.floats(1.0, 500.0))

@@ -17,6 +17,7 @@ from greywhale.files.arm import default_arm
 from greywhale.protocol import schema
 from greywhale.protocol.firmware import ANGLE_LSB
 from greywhale.protocol.table import ParameterTable
+from tests.support.arms import with_joints
 from tools.support.hands import mounted_anyhow
 
 ENDS = np.array([-1.0, 1.2])
@@ -140,8 +141,7 @@ def test_an_arm_and_a_board_with_other_joints_do_not_match() -> None:
     table = calibrated(1).with_raw({"follower2.scale": 0, "leader2.scale": 0, "leader0.scale": 0})
     with pytest.raises(UserError, match="the arm file uses all four joints, but the board uses joints 0, 1 and 3"):
         with_board_pots(default_arm(), table)
-    joints = [one.model_copy(update={"fixed": joint == 2}) for joint, one in enumerate(default_arm().joint)]
-    arm = default_arm().model_copy(update={"joint": tuple(joints)})
+    arm = with_joints((0, 1, 3))
     found = with_board_pots(arm, table)
     assert found.leader_pots.joint[0] == arm.leader_pots.joint[0], "a host leads that joint"
     assert found.follower_pots.joint[0] != arm.follower_pots.joint[0]
