@@ -5,21 +5,11 @@ from __future__ import annotations
 import pytest
 
 from greywhale.base.errors import UserError
-from greywhale.protocol import schema
 from greywhale.protocol.joints import ALL, listed, parse, require_same
 from greywhale.protocol.schema import Board
-from greywhale.protocol.table import CONTROLLER_COLUMNS, ParameterTable, find_board, refuse_unknown
+from greywhale.protocol.table import ParameterTable, find_board, refuse_unknown
 
 DEFAULTS = ParameterTable.defaults()
-
-
-def test_values_go_by_name_raw_or_in_their_unit() -> None:
-    for parameter in schema.PARAMETERS:
-        assert DEFAULTS[parameter.name] == parameter.default
-        assert DEFAULTS.physical(parameter.name) == parameter.to_physical(parameter.default)
-    assert DEFAULTS.each("joint", "ku_mv") == (15000, 11550, 13150, 14500)
-    assert (DEFAULTS.period_ms, DEFAULTS.supply_v) == (1, 15.0)
-    assert DEFAULTS.crc == schema.param_crc(schema.DEFAULTS)
 
 
 def test_a_change_leaves_the_rest_the_board_and_the_name() -> None:
@@ -29,26 +19,6 @@ def test_a_change_leaves_the_rest_the_board_and_the_name() -> None:
     assert (changed.board, changed.name) == (Board.NANO328, "mine")
     assert nano.changes() == {}
     assert changed.with_raw(DEFAULTS.by_name()) == nano
-
-
-def test_controllers_are_rows_of_the_table_and_back() -> None:
-    rows = [list(row) for row in DEFAULTS.controllers]
-    rows[3][CONTROLLER_COLUMNS.index("ki")] = 5
-    assert DEFAULTS.with_controllers(rows).changes() == {"joint3.ki": 5}
-    assert DEFAULTS.with_controllers(DEFAULTS.controllers) == DEFAULTS
-
-
-@pytest.mark.parametrize(
-    ("changes", "words"),
-    [
-        ({"period_ms": 51}, "period_ms is 51 ms, which is out of range"),
-        ({"joint1.limit_min": 10240}, r"joint1.limit_min is 2.5 and joint1.limit_max is 2.5 rad"),
-        ({"joint0.motor_sign": 0}, "joint0.motor_sign is 0"),
-    ],
-)
-def test_what_no_board_would_run_is_no_table(changes: dict[str, int], words: str) -> None:
-    with pytest.raises(UserError, match=words):
-        DEFAULTS.with_raw(changes)
 
 
 def test_a_follower_without_a_potentiometer_is_a_joint_that_is_not_in_use() -> None:
