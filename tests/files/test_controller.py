@@ -18,7 +18,6 @@ from greywhale.protocol.table import ParameterTable
 from greywhale.simulate import CONTROLLER_COLUMNS, controller_row, default_controller
 from tools import ROOT
 
-TABLES = sorted((ROOT / "shared" / "fuzzy_tables").glob("table_*.toml"))
 SETS = {
     "Ne_c": -0.3, "Ze_a": -0.3, "Ze_c": 0.3, "Pe_b": 0.3, "Nce_c": -0.1, "Zce_a": -0.1, "Zce_c": 0.1, "Pce_b": 0.1,
 }  # fmt: skip
@@ -39,17 +38,6 @@ def load(tmp_path: Path, content: str) -> controller.Controller:
     path = tmp_path / "controller.toml"
     path.write_text(content)
     return controller.load(path)
-
-
-@pytest.mark.parametrize(
-    "path", [*TABLES, ROOT / "shared" / "fuzzy_tables" / "before_tuning.toml"], ids=lambda p: p.stem
-)
-def test_the_papers_controllers_load(path: Path) -> None:
-    loaded = controller.load(path)
-    values = loaded.raw_values()
-    assert len(values) == 4 * len(CONTROLLER_COLUMNS)
-    for name, raw in values.items():
-        schema.PARAMETER_BY_NAME[name].check_raw(raw)
 
 
 def test_before_tuning_is_what_the_firmware_starts_with() -> None:

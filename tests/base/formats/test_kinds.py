@@ -2,40 +2,12 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
 import pytest
 
 from greywhale.base.errors import UserError
-from greywhale.base.formats import toml_file
 from greywhale.base.formats.kinds import Kind, kind_of, refuse_other_kind
-from greywhale.files import parameter_file
-from greywhale.files.arm import arm_names, load_arm
-from greywhale.files.model import arm_toml, to_toml
-from greywhale.protocol.table import ParameterTable
-
-TABLES = sorted((Path(__file__).parents[3] / "shared" / "fuzzy_tables").glob("*t*_*.toml"))
-
-
-@pytest.mark.parametrize("name", arm_names())
-def test_arms_and_models(name: str, tmp_path: Path) -> None:
-    arm = load_arm(name)
-    for text, kind in ((arm_toml(arm, "an arm"), Kind.ARM), (to_toml(arm, {"status": "complete"}), Kind.MODEL)):
-        path = tmp_path / "file.toml"
-        path.write_text(text, encoding="utf-8")
-        assert kind_of(toml_file.read(path)) is kind
-
-
-@pytest.mark.parametrize("path", TABLES, ids=lambda path: path.stem)
-def test_controllers(path: Path) -> None:
-    assert kind_of(toml_file.read(path)) is Kind.CONTROLLER
-
-
-def test_parameters(tmp_path: Path) -> None:
-    path = tmp_path / "board.toml"
-    parameter_file.save(path, ParameterTable.defaults())
-    assert kind_of(toml_file.read(path)) is Kind.PARAMETERS
 
 
 def test_answers_and_files_of_no_kind() -> None:

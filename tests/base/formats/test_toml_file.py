@@ -52,13 +52,6 @@ class Loose(BaseModel):
 GOOD = "[[wheel]]\nradius = 0.5\n"
 
 
-def test_a_good_file_is_read(tmp_path: Path) -> None:
-    path = tmp_path / "cart.toml"
-    path.write_text("name = 'x'\n" + GOOD + "[[wheel]]\nradius = 2\nspokes = 8\n")
-    cart = toml_file.load(path, Cart)
-    assert [(wheel.radius, wheel.spokes) for wheel in cart.wheel] == [(0.5, 32), (2.0, 8)]
-
-
 @pytest.mark.parametrize(
     ("text", "sentence"),
     [

@@ -64,10 +64,6 @@ def test_a_finished_study_is_not_done_again(tmp_path: Path) -> None:
     assert (tmp_path / "r").read_bytes() == content
 
 
-def test_no_tasks_give_no_results(tmp_path: Path) -> None:
-    assert run_study([], SerialWorkers(), tmp_path / "r") == {}
-
-
 @pytest.mark.slow
 def test_a_lost_worker_ends_the_study_which_goes_on_from_what_is_done(tmp_path: Path) -> None:
     notes = jobs.notes(3, tmp_path)
