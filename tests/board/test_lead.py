@@ -14,7 +14,7 @@ from greywhale.board.lead import ROOM, Leading, Plan
 from greywhale.files.trajectory import Trajectory
 from greywhale.motion import human_reaches
 from greywhale.protocol import schema
-from greywhale.protocol.firmware import FASTEST_LED_RAD_S, POINT_S, STEP_LSB
+from greywhale.protocol.firmware import POINT_S, STEP_LSB
 
 LIMITS = np.array([np.full(4, -2.5), np.full(4, 2.5)])
 RAD = 1.0 / 4096.0
@@ -186,10 +186,3 @@ def test_a_plan_goes_slowly_to_its_first_pose_and_keeps_the_limits() -> None:
     assert plan.angles[:, 0].max() == pytest.approx(1.1 - STEP_LSB)
     assert plan.duration_s == pytest.approx(first * POINT_S + 2.0 + 0.5, abs=0.1)
     assert np.allclose(plan.angles[-30:], motion.angles[-1])
-
-
-def test_a_motion_faster_than_the_link_can_say_is_refused() -> None:
-    quick = Trajectory(np.array([0.0, 0.1, 1.0]), np.array([[0.0] * 4, [0, 0, 1.0, 0], [0, 0, 1.0, 0]]))
-    with pytest.raises(UserError, match=r"joint 2 at .* 7\.75 rad/s"):
-        Plan.of(quick, np.zeros(4), LIMITS)
-    assert pytest.approx(7.75, abs=0.01) == FASTEST_LED_RAD_S
