@@ -15,7 +15,6 @@ from greywhale.files.arm import default_arm
 from greywhale.simulate.controllers import controllers_of
 from tests.adapt.conftest import TABLE
 from tests.adapt.simulated import Work
-from tests.support.arms import make_arm
 from tools.support.worker import grown_friction
 
 pytestmark = pytest.mark.slow
@@ -45,14 +44,6 @@ def test_friction_that_grew_is_found(grown: list[Stretch]) -> None:
     assert len(refitted.plants) == PLANTS
     assert missed(LIVE, grown) > 0.15
     assert missed(refitted, grown) < 0.1
-
-
-def test_a_load_that_was_taken_up_is_weighed() -> None:
-    stretches = half_minute(make_arm(tip={"mass": 0.3}))
-    refitted = LIVE.refit(stretches, TABLE, 1)
-    assert refitted.changes()["arm.tip"] == pytest.approx(0.3, abs=0.03)
-    assert missed(LIVE, stretches) > 0.3
-    assert missed(refitted, stretches) < 0.1
 
 
 def test_an_unchanged_arm_stays_as_it_was() -> None:

@@ -37,11 +37,6 @@ def test_cuts_that_overlap_are_the_same_samples_and_neighbours_are_not(recorded:
     assert not shares_samples(copy(recorded.fit, slice(0, 5000)), copy(recorded.fit, slice(5000, None)))
 
 
-def test_recordings_of_one_arm_are_not_the_same_samples(recorded: Recorded) -> None:
-    assert not shares_samples(recorded.fit, recorded.second)
-    assert not shares_samples(recorded.second, recorded.changed)
-
-
 def test_rest_that_looks_the_same_does_not_count(recorded: Recorded) -> None:
     """Two recordings of a quiet bench begin with equal samples for seconds, before their motions differ."""
     logs = [_after_rest(log, 6000) for log in (recorded.fit, recorded.second)]

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from greywhale.arm.plants import columns
-from greywhale.base.errors import BAD_USAGE, FAILED, UserError
+from greywhale.base.errors import FAILED, UserError
 from greywhale.files import parameter_file
 from greywhale.files.arm import default_arm, load_arm
 from greywhale.files.model import to_toml
@@ -224,9 +224,3 @@ def test_a_broken_table_is_refused_even_with_force(tmp_path: Path, changes: dict
     path = write_model(tmp_path / "model.toml", **changes)
     with pytest.raises(UserError, match=f"^{path}: {words}"):
         load_model(path, force=True)
-
-
-def test_no_samples_are_bad_usage(tmp_path: Path) -> None:
-    with pytest.raises(UserError, match="samples is 0") as caught:
-        load_model(write_model(tmp_path / "model.toml"), samples=0)
-    assert caught.value.exit_code == BAD_USAGE

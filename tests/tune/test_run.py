@@ -15,8 +15,6 @@ from greywhale.arm.parameters import USUAL_NOISE_V, with_usual_noise
 from greywhale.base.errors import UserError
 from greywhale.base.types import show_no_progress
 from greywhale.optimise import METHODS as OPTIMISERS
-from greywhale.protocol.schema import PARAMETER_BY_NAME
-from greywhale.protocol.table import CONTROLLER_COLUMNS, ParameterTable, physical
 from greywhale.simulate import plant_row
 from greywhale.tune import METHODS, TuningResult, check_request, default, tune
 from greywhale.tune.default import CALMER, KU, DefaultMethod
@@ -92,18 +90,6 @@ def test_every_joint_comes_to_rest(tuned: tuple[TuningResult, Path]) -> None:
     for was, now in zip(outcome.margins_before, outcome.margins, strict=True):
         assert now.scenario == TEETH or now.plants_failing <= was.plants_failing
     assert all(margin.plants == 2 for margin in outcome.margins)
-
-
-@pytest.mark.slow
-def test_the_outcome_is_plain_json(tuned: tuple[TuningResult, Path]) -> None:
-    facts = json.loads(json.dumps(tuned[0].as_dict(), allow_nan=False))
-    table = ParameterTable.defaults().with_controllers(tuned[0].after)
-    assert facts["after"] == {
-        name: physical(PARAMETER_BY_NAME[name], table[name])
-        for name in (f"joint{joint}.{key}" for joint in range(4) for key in CONTROLLER_COLUMNS)
-    }
-    assert len(facts["curves"]) == 4
-    assert facts["curves"][0]["evaluations"][-1] == facts["evaluations"]
 
 
 @pytest.mark.slow

@@ -5,28 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
-import numpy as np
-
 from greywhale.files import controller
-from greywhale.protocol.table import ParameterTable
-from greywhale.simulate import controller_row
 from greywhale.tune.report.controller_file import provenance, save
 from greywhale.tune.result import TuningResult
-
-
-def test_it_is_a_controller_file_with_the_very_numbers(outcome: TuningResult, tmp_path: Path) -> None:
-    save(outcome, tmp_path / "controller.toml")
-    loaded = controller.load(tmp_path / "controller.toml")
-    np.testing.assert_array_equal(controller_row(loaded), outcome.after)
-    assert loaded.tuning == provenance(outcome)
-    assert loaded.source == f"greywhale tune, method default, strategy both, seed 3, for {outcome.model.name}"
-
-
-def test_it_tells_the_crc_that_the_board_will_have(outcome: TuningResult) -> None:
-    defaults = ParameterTable.defaults()
-    assert outcome.model.travel is not None
-    changed = defaults.with_raw({"joint2.kp": defaults["joint2.kp"] + 1} | outcome.model.travel.raw())
-    assert provenance(outcome)["parameter_crc"] == f"0x{changed.crc:04x}"
 
 
 def test_a_measure_that_not_every_joint_has_is_left_out(outcome: TuningResult) -> None:
