@@ -22,6 +22,7 @@ from greywhale.protocol.table import ParameterTable
 from greywhale_sim.hands import ENDS_DEG
 from greywhale_sim.lockstep import LockStepBench
 from greywhale_sim.words import lock_step
+from tests.board.flash.hex_files import hex_text
 from tests.page.barriers import DARK_AND_NARROW, require_no_barrier
 from tests.page.site.false_serial import connected
 from tests.page.site.serve_folder import Site
@@ -182,16 +183,6 @@ def test_a_board_is_watched_driven_and_changed(context: BrowserContext, site: Si
         assert stored.each("joint", "limit_max")[:2] == pytest.approx([highest] * 2, abs=60)
 
 
-def full_of_zeros(size: int) -> str:
-    """A HEX file of a program that does nothing."""
-    lines = []
-    for at in range(0, size, 16):
-        for address, kind, data in ((0, 4, (at >> 16).to_bytes(2, "big")), (at & 0xFFFF, 0, bytes(16))):
-            record = bytes([len(data), *address.to_bytes(2, "big"), kind, *data])
-            lines.append(f":{record.hex()}{-sum(record) & 0xFF:02x}\n")
-    return "".join(lines) + ":00000001ff\n"
-
-
 @pytest.mark.parametrize(
     ("board", "other", "title"), [("mega", "nano", "Mega 2560"), ("nano", "mega", "Nano (ATmega328P)")]
 )
@@ -201,7 +192,7 @@ def test_a_board_of_another_program_is_flashed_and_the_other_boards_image_refuse
     (parts,) = (path for path in folder.iterdir() if path.is_dir())
     image = read_image(parts / f"{board}.hex").memory
     before = tmp_path / "before.hex"
-    before.write_text(full_of_zeros(len(image)))  # what was not erased stays zero
+    before.write_text(hex_text(bytes(len(image))))  # what was not erased stays zero
     words = ("--board", board, "--firmware", str(before))
     with lock_step(*words) as bench, connected(context, site, bench) as (page, _):
         page.evaluate(WATCH_REQUESTS)
