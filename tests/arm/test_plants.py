@@ -10,7 +10,7 @@ import pytest
 from greywhale import _native
 from greywhale.arm import ArmParameters
 from greywhale.arm.from_plant import arm_of, known_before
-from greywhale.arm.plants import PLANT_COLUMNS, plant_row
+from greywhale.arm.plants import plant_row
 from greywhale.files.arm import load_arm
 from greywhale.protocol.firmware import JOINTS
 from tests.support.arms import make_arm
@@ -18,12 +18,6 @@ from tests.support.arms import make_arm
 
 def named(arm: ArmParameters) -> dict[str, float]:
     return dict(zip(_native.PLANT_COLUMN_NAMES, map(float, plant_row(arm)), strict=True))
-
-
-def test_names_are_those_of_the_python_tables() -> None:
-    assert isinstance(_native.PLANT_COLUMN_NAMES, tuple)
-    assert tuple(PLANT_COLUMNS) == _native.PLANT_COLUMN_NAMES
-    assert len(set(_native.PLANT_COLUMN_NAMES)) == _native.PLANT_COLUMNS
 
 
 @pytest.mark.parametrize("name", ["white_box", "worn"])

@@ -237,13 +237,6 @@ def test_a_load_pulls_the_arm_down_and_a_hand_pushes_a_joint_against_what_is_in_
     assert rest() == pytest.approx(rest(), abs=1e-3)
 
 
-def test_a_person_leads_live(server: Server) -> None:
-    assert commands.run(server, "lead 0.1 0.2 0.3 0.4") == {"lead": [0.1, 0.2, 0.3, 0.4]}
-    server.bench.run(1.0)
-    assert commands.run(server, "status")["leader"] == pytest.approx([0.1, 0.2, 0.3, 0.4], abs=1e-3)
-    assert commands.run(server, "leader reaches")["duration_s"] > 10.0
-
-
 def test_a_potentiometer_floats_until_it_is_connected_again(server: Server, board: Any) -> None:
     assert commands.run(server, "pot leader 1 floating") == {"pot": "leader_1", "state": "floating"}
     commands.run(server, "pot follower 2 floating")

@@ -339,12 +339,6 @@ def test_sim_says_on_stderr_the_name_that_other_verbs_use(
     assert "greywhale info" in captured.err
 
 
-def test_a_bench_whose_eeprom_has_no_place_does_not_start(tmp_path: Path, capsys: Captured) -> None:
-    for place in ("/proc/eeprom.bin", str(tmp_path)):
-        code, answer = ask(capsys, "sim", "--eeprom", place)
-        assert (code, answer["error"].startswith(f"{place}: ")) == (2, True)
-
-
 @pytest.mark.parametrize("verb", ["sim", "demo"])
 def test_a_missing_bench_is_one_sentence(capsys: Captured, monkeypatch: pytest.MonkeyPatch, verb: str) -> None:
     for module in ("greywhale_sim", "greywhale_sim.serve", "greywhale_sim.serial_port"):

@@ -147,42 +147,28 @@ def test_so_is_one_with_a_name_that_nobody_gave(
     assert [path.name for path in alone.iterdir()] == [name]
 
 
+OUTPUTS = {"out", "backup", "picture", "save_motion", "pictures"}
+FOLDERS = ("demo", "commission", "reproduce")
+
+
 def test_every_verb_that_writes_a_file_is_among_them() -> None:
     """Those with --overwrite; the folders of demo, commission and reproduce belong to these verbs."""
-    for verb, option in WRITES.items():
-        assert option == ("overwrite" in {one.name for one in command_of(verb).params}), verb
-    assert {verb for verb, option in WRITES.items() if option} == {
-        " ".join(words[: 2 if words[0] in ("params", "arm") else 1]) for words in WRITERS
-    }
+    options = dict(options_of(greywhale))
+    writes = {verb for verb, names in options.items() if verb not in FOLDERS and OUTPUTS & names} | {"params backup"}
+    assert writes == {verb for verb, names in options.items() if "overwrite" in names}
+    assert writes == {" ".join(words[: 2 if words[0] in ("params", "arm") else 1]) for words in WRITERS}
 
 
-def leaves(group: click.Group, before: str = "") -> Iterator[str]:
+def options_of(group: click.Group, before: str = "") -> Iterator[tuple[str, set[str]]]:
+    """Every verb, and what it takes."""
     context = click.Context(group)
     for name in group.list_commands(context):
         command = group.get_command(context, name)
+        assert command is not None
         if isinstance(command, click.Group):
-            yield from leaves(command, f"{before}{name} ")
+            yield from options_of(command, f"{before}{name} ")
         else:
-            yield f"{before}{name}"
-
-
-def command_of(verb: str) -> click.Command:
-    command: click.Command = greywhale
-    for word in verb.split():
-        assert isinstance(command, click.Group)
-        found = command.get_command(click.Context(command), word)
-        assert found is not None
-        command = found
-    return command
-
-
-_OUTPUTS = {"out", "backup", "picture", "save_motion", "pictures"}
-_FOLDERS = ("demo", "commission", "reproduce")
-WRITES = {
-    verb: verb == "params backup"
-    or (verb not in _FOLDERS and bool(_OUTPUTS & {str(one.name) for one in command_of(verb).params}))
-    for verb in leaves(greywhale)
-}
+            yield f"{before}{name}", {str(one.name) for one in command.params}
 
 
 @pytest.mark.slow

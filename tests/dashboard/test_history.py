@@ -5,9 +5,6 @@ from __future__ import annotations
 import pytest
 
 from greywhale.dashboard.history import FRAME_BYTES, History
-from greywhale.protocol.frames import FrameDecoder
-from greywhale.protocol.schema import Sample
-from tests.dashboard.shared import Shared
 
 
 def frame(tick: int) -> bytes:
@@ -36,14 +33,3 @@ def test_a_tick_counts_from_the_last_restart() -> None:
     assert kept(history, 0) == list(range(3, 20, 2))
     assert kept(history, 8) == list(range(9, 20, 2))
     assert kept(history)[:30] == list(range(500, 530))
-
-
-def test_a_page_that_comes_later_misses_nothing(shared: Shared) -> None:
-    before = shared.page()
-    shared.live(0.5)
-    late = shared.page()
-    whole = FrameDecoder().feed(shared.relay.history.since(None))
-    shared.live(0.2)
-    ticks = [Sample.unpack(one.payload).tick for one in whole] + [one.tick for one in late.samples()]
-    assert ticks == list(range(ticks[0], ticks[0] + len(ticks)))
-    assert ticks == [one.tick for one in before.samples()]

@@ -8,7 +8,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from greywhale.base.errors import UserError
 from greywhale.fuzzy import exact, load_joints
 from greywhale.fuzzy.export_fis import export_fis, fis_text
 
@@ -59,9 +58,3 @@ def test_the_file_says_what_matlab_expects(tmp_path: Path) -> None:
         "3 2, 3 (1) : 1",
         "3 3, 3 (1) : 1",
     ]
-
-
-def test_a_folder_that_is_missing_is_named(tmp_path: Path) -> None:
-    sets = {key: float(value) for key, value in _sets("before_tuning").items()}
-    with pytest.raises(UserError, match="nowhere"):
-        export_fis(tmp_path / "nowhere" / "joint0.fis", "joint0", sets)
