@@ -36,7 +36,7 @@ from greywhale.simulate.closed_loop import ClosedLoop, known_readings
 from greywhale.simulate.controllers import controllers_of
 from greywhale.tune import TuningResult
 from greywhale.tune.model import Model
-from tests.tune.models import write_model
+from tests.tune.models import tuned, write_model
 
 POSE = np.array([0.0, 0.4, 0.0, 0.0])
 ROOM = JointRange(POSE, POSE - 0.9, POSE + 0.9)
@@ -99,29 +99,6 @@ def options_in(folder: Path) -> Callable[..., CommissioningRequest]:
         return CommissioningRequest(**given | changes)
 
     return make
-
-
-def tuned(model: Model, before: np.ndarray, after: np.ndarray) -> TuningResult:
-    """A tuning that nobody judged."""
-    return TuningResult(
-        model=model,
-        table=model.table,
-        strategy="mf",
-        method="default",
-        seed=0,
-        budget=1,
-        evaluations=1,
-        complete=True,
-        before=before,
-        after=after,
-        cost_before=(1.0,) * JOINTS,
-        cost_after=(1.0,) * JOINTS,
-        curves=(),
-        margins_before=(),
-        margins=(),
-        held_out=(),
-        notes=(),
-    )
 
 
 def in_no_time(rig: SimulatedRig, patch: pytest.MonkeyPatch) -> None:

@@ -19,14 +19,6 @@ from greywhale_sim.assemble import BenchOptions, build_bench
 from greywhale_sim.bench import Bench
 
 
-class Refused(AssertionError):
-    """The board said no where the test expected a yes."""
-
-    def __init__(self, nack: schema.Nack) -> None:
-        super().__init__(f"refused: {nack}")
-        self.nack = nack
-
-
 class LockStep:
     """A host without a wall clock: sends a request and simulates until the answer is there. Deterministic."""
 
@@ -70,8 +62,7 @@ class LockStep:
             answers = [frame for frame in self._frames if frame.seq == sequence]
             self._frames.clear()
             if answers:
-                if answers[0].type == schema.Nack.TYPE:
-                    raise Refused(schema.Nack.unpack(answers[0].payload))
+                assert answers[0].type != schema.Nack.TYPE, schema.Nack.unpack(answers[0].payload)
                 return request.reply(answers[0].payload)
         raise AssertionError(f"no answer to {request.NAME} within 0.1 s of simulated time")
 

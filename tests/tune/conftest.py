@@ -14,7 +14,7 @@ from greywhale.tune.judge.held_out import HeldOut
 from greywhale.tune.judge.margins import Margin
 from greywhale.tune.model import load_model
 from greywhale.tune.result import Curve, TuningResult
-from tests.tune.models import evaluation, log_facts, write_model
+from tests.tune.models import evaluation, log_facts, tuned, write_model
 
 
 @pytest.fixture
@@ -33,19 +33,10 @@ def outcome(tmp_path: Path) -> TuningResult:
         for name, floor in zip(("steps", "reaches"), floors, strict=True)
     ]
     margins = [Margin("at rest", joint, 0, 0.0, 0, 2) for joint in (1, 0, 2, 3)]
-    return TuningResult(
-        model=model,
-        table=model.table,
-        strategy="both",
-        method="default",
-        seed=3,
-        budget=10,
-        evaluations=10,
-        complete=True,
-        before=default_controller(),
-        after=after,
-        cost_before=(1.0,) * 4,
-        cost_after=(0.123456,) * 4,
+    return tuned(
+        model,
+        default_controller(),
+        after,
         curves=(Curve((10,), (0.1,)),) * 4,
         margins_before=tuple(margins),
         margins=tuple(margins),
