@@ -2,24 +2,25 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
-from greywhale.arm.parameters import usual_pots
+from greywhale.arm.parameters import with_usual_noise
 from greywhale.files.arm import load_arm
-from greywhale.files.log import Log
-from greywhale.files.log.layout import Origin
+from greywhale.files.trajectory import Trajectory
 from greywhale.identify.data import prepare
 from greywhale.identify.excite.information import information, natural_sizes, prior
 from greywhale.identify.excite.limits import limits_of
-from greywhale.identify.excite.multisine import Shape, board_reference
+from greywhale.identify.excite.multisine import Shape
 from greywhale.identify.excite.trial import ROW_S, try_motion
 from greywhale.identify.space import MOTOR, Space
 from greywhale.identify.windows import WindowResidual
 from greywhale.motion import human_reaches
+from greywhale.protocol.firmware import POINT_S
 from greywhale.protocol.table import ParameterTable
-from greywhale.simulate.closed_loop import ClosedLoop, known_readings
-from greywhale.simulate.controllers import controllers_of
+from tools.support.recordings import record
 
 SECONDS = 12.0
 POSE = np.array([0.0, 0.45, -0.1, 0.0])
@@ -29,28 +30,11 @@ SPACE = Space.of(ARM, (*MOTOR, "coulomb"), range(4))
 X = SPACE.start()
 
 
-def simulated_log(points: np.ndarray) -> Log:
-    """What a board would log of the arm led through the points, with a reading's noise."""
-    reference = np.vstack([np.tile(points[:1], (304, 1)), board_reference(points)])
-    loop = ClosedLoop(
-        TABLE,
-        known_readings(reference),
-        usual_pots(),
-        seed=1,
-        home=points[0].tolist(),
-        gap=[0.0] * 4,
-        weight_s=np.zeros(len(reference)),
-    )
-    result = loop.run(controllers_of(TABLE)[None], SPACE.plants(X[None]), substeps=2, threads=1, every=1)
-    angles, volts = result.angles[0, 304:].astype(np.float64), result.duties[0, 304:] / 400 * 15.0
-    readings = angles + np.random.default_rng(1).normal(0.0, 1.2e-3, angles.shape)
-    times, state = np.arange(len(angles)) / 1000, np.array(["following"] * len(angles))
-    return Log("log", Origin(), times, reference[304:], readings, volts, state, 0, True)
-
-
-def seen_by_the_identification(points: np.ndarray) -> np.ndarray:
+def seen_by_the_identification(points: np.ndarray, path: Path) -> np.ndarray:
     """Fisher information of the window residual by finite differences."""
-    residual = WindowResidual([prepare(simulated_log(points), 1)], ARM, range(4))
+    motion = Trajectory(np.arange(len(points), dtype=np.float64) * POINT_S, points)
+    log = record(with_usual_noise(ARM), motion, path, TABLE)
+    residual = WindowResidual([prepare(log, 1)], ARM, range(4))
     steps = SPACE.steps
     numbers = residual(SPACE, np.vstack([X[None], X + np.diag(steps), X - np.diag(steps)]))
     count = len(X)
@@ -65,11 +49,12 @@ def expected(points: np.ndarray) -> np.ndarray:
 
 
 @pytest.fixture(scope="module")
-def informations() -> dict[str, tuple[np.ndarray, np.ndarray]]:
+def informations(tmp_path_factory: pytest.TempPathFactory) -> dict[str, tuple[np.ndarray, np.ndarray]]:
     """What three motions tell beside what is known before: as the identification sees it, and as is expected."""
     before = np.diag(SPACE.doubts() ** -2.0)
+    path = tmp_path_factory.mktemp("logs") / "log.csv"
     return {
-        name: (seen_by_the_identification(points) + before, expected(points) + before)
+        name: (seen_by_the_identification(points, path) + before, expected(points) + before)
         for name, points in motions().items()
     }
 
