@@ -8,10 +8,11 @@ from typing import Any
 import numpy as np
 import pytest
 
+from greywhale.arm.parameters import JOINT_NAMES
 from greywhale.base.errors import UserError
 from greywhale.board.calibrate.person import Answer, Watch
 from greywhale.board.calibrate.walk import HELD_TICKS, TRIES, Walk
-from greywhale.board.calibrate.words import poses_asked
+from greywhale.board.calibrate.words import POSITIVE_WAYS, poses_asked
 from greywhale.board.pots import FULL_SCALE
 from greywhale.protocol import schema
 from greywhale.protocol.joints import ALL, Joints
@@ -137,19 +138,10 @@ def test_each_sweep_says_which_joint_of_which_arm_which_way_first_and_how_many()
     assert script.left == []
     assert found.zero == pytest.approx(500.0, abs=0.1)
     assert apart == pytest.approx(0.0, abs=1e-3)
-    for number, (name, positive) in enumerate(
-        [
-            ("leader joint 0, base yaw", "counter-clockwise, seen from above"),
-            ("leader joint 1, shoulder pitch", "up: the hand rises"),
-            ("leader joint 2, wrist pitch", "up: the hand rises, while the upper arm is level"),
-            ("leader joint 3, wrist roll", "clockwise, seen from the elbow along the hand"),
-            ("follower joint 0, base yaw", "counter-clockwise, seen from above"),
-        ],
-        1,
-    ):
-        told = script.asked[number - 1]
-        assert told.startswith(f"Sweep {number} of 8: {name}. Turn it, and no other, slowly to its positive end")
-        assert f"({positive}), then to its negative end" in told
+    for place, told in enumerate(script.asked[:8]):
+        name = f"{('leader', 'follower')[place // 4]} joint {place % 4}, {JOINT_NAMES[place % 4]}"
+        assert told.startswith(f"Sweep {place + 1} of 8: {name}. Turn it, and no other, slowly to its positive end")
+        assert f"({POSITIVE_WAYS[place % 4]}), then to its negative end" in told
     assert script.asked[8] == "Pose 1 of 4: hold both arms in this pose: every joint at 0 (stretched out, level)."
     assert script.shown[0].startswith("leader potentiometer 0 reads ")
     assert script.shown[-1] == "leader 422 422 422 422, follower 422 422 422 422 of 1023"
