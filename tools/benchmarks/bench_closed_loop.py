@@ -20,6 +20,7 @@ from typing import Any
 import numpy as np
 
 from greywhale.arm.export import mjcf
+from greywhale.arm.plants import columns
 from greywhale.files.arm import default_arm
 from greywhale.motion import human_reaches
 from greywhale.simulate import Experiment, default_controller, plant_row
@@ -45,7 +46,7 @@ def run() -> list[Figure]:
     arm = default_arm()
     random = np.random.default_rng(1)
     plants = np.repeat(plant_row(arm)[None], CANDIDATES, axis=0)
-    plants[:, 11:59:12] *= np.exp(random.uniform(-0.3, 0.3, (CANDIDATES, 4)))  # torque per volt
+    plants[:, columns("torque_per_volt")] *= np.exp(random.uniform(-0.3, 0.3, (CANDIDATES, 4)))
     controllers = np.repeat(default_controller()[None], CANDIDATES, axis=0)
     controllers[:, :, 8] = (controllers[:, :, 8] * random.uniform(0.7, 1.3, (CANDIDATES, 4))).astype(np.int32)
     experiment = Experiment(human_reaches(1, SECONDS), arm)
