@@ -144,7 +144,7 @@ def demonstrated(yours: Path, tmp_path_factory: pytest.TempPathFactory) -> Once:
     def compute() -> Any:
         with pytest.MonkeyPatch.context() as patch:
             in_this_process(patch)
-            return real(options, None)
+            return real(options)
 
     return Once(compute)
 

@@ -37,31 +37,30 @@ MOST_START_TICKS = 12_000
 BUMP_TICKS = 400
 
 
-def adapt(request: AdaptationRequest, report: NotedProgress | None = None) -> AdaptationResult:
+def adapt(request: AdaptationRequest, report: NotedProgress = show_no_progress) -> AdaptationResult:
     """Watch a person work for `request.seconds`, and adapt the controllers meanwhile.
 
     The set from the start runs again at the end; `store_kept` stores what was kept. Raises UserError.
     """
-    told = report or show_no_progress
     model = load_model(request.model, force=True)
     with background(request.workers) as searches, Device(request.port) as device:
-        start = read_parameters(device, told)
+        start = read_parameters(device, report)
         refuse_uncalibrated(model.arm, start)
-        session = _Session(device, request, model, start, searches, told)
+        session = _Session(device, request, model, start, searches, report)
         try:
             session.work()
             if session.changes:
-                run_set(device, start, told)
+                run_set(device, start, report)
         except BaseException as error:
             _put_back(device, start, session.changes, error)
             raise
         return session.result()
 
 
-def store_kept(port: str, result: AdaptationResult, report: NotedProgress | None = None) -> AdaptationResult:
+def store_kept(port: str, result: AdaptationResult, report: NotedProgress = show_no_progress) -> AdaptationResult:
     """Let the board run and store what an adaptation kept. Raises UserError."""
     with Device(port) as device:
-        upload_set(device, result.kept, report or show_no_progress)
+        upload_set(device, result.kept, report)
     return replace(result, stored=True)
 
 

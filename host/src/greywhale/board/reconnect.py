@@ -32,7 +32,7 @@ def record_through_losses(
     path: str | Path,
     seconds: float,
     every: int = 1,
-    progress: Progress | None = None,
+    report: Progress = show_no_progress,
     open_device: Open = Device,
 ) -> Recording:
     """Record `seconds` of samples with the motors off; time goes on while the port is away.
@@ -40,7 +40,6 @@ def record_through_losses(
     Where it does not come back until then, or with another board or other parameters, the log ends there and says so.
     """
     check_request(seconds, every, enable=False)
-    report = progress or show_no_progress
     name, length = lasting_name(port), round(seconds * 1000)
     device = open_device(port)
     try:

@@ -106,12 +106,11 @@ def record(
     seconds: float,
     every: int = 1,
     enable: bool = False,
-    progress: Progress | None = None,
+    progress: Progress = show_no_progress,
     disengaged: bool = False,
 ) -> Recording:
     """Record `seconds` of samples, one every `every` ticks of 1 ms; with `enable` perhaps `disengaged` first."""
     check_request(seconds, every, enable)
-    report = progress or show_no_progress
     origin = origin_of(device, read_parameters(device), every)
     length = round(seconds * 1000)
     with LogWriter(path, origin) as log:
@@ -120,10 +119,10 @@ def record(
             if disengaged:
                 device.clutch(schema.ClutchAction.DISENGAGE)
             with device.enabled(max(LEASE_MS, 20 * every)):
-                received = _await_following(device, received, report)
-                duration = write_samples(device, log, received, length, True, report)
+                received = _await_following(device, received, progress)
+                duration = write_samples(device, log, received, length, True, progress)
         else:
-            duration = write_samples(device, log, received, length, False, report)
+            duration = write_samples(device, log, received, length, False, progress)
     device.telemetry(0)
     return Recording(Path(path), log.rows, log.dropped, duration)
 
@@ -133,7 +132,7 @@ def record_led(
     path: str | Path,
     motion: Trajectory,
     every: int = 1,
-    progress: Progress | None = None,
+    progress: Progress = show_no_progress,
     table: ParameterTable | None = None,
     *,
     patient: bool = True,
@@ -146,8 +145,7 @@ def record_led(
     along the same motion. `watch` sees every sample of the log, and what it raises ends the recording, motors off.
     """
     check_every_led(every)
-    report = progress or show_no_progress
-    running = read_parameters(device, report) if table is None else table
+    running = read_parameters(device, progress) if table is None else table
     limits = np.array(running.limits_raw()) * ANGLE_LSB
     Plan.of(motion, motion.angles[0], limits)  # too fast a motion is refused with the motors off
     origin = origin_of(device, running, every)
@@ -157,8 +155,8 @@ def record_led(
             pose = np.array(begun.reference) * ANGLE_LSB
             plan = Plan.of(motion, pose, limits, REST_S)
             leading = Leading(device, begun, plan, running.physical("tracking_limit") if patient else 0.0)
-            received = _await_following(device, received, report, leading)
-            duration = _write_led(device, log, received, leading, report, watch)
+            received = _await_following(device, received, progress, leading)
+            duration = _write_led(device, log, received, leading, progress, watch)
     device.telemetry(0)
     return LedRecording(Path(path), log.rows, log.dropped, duration, (), leading.slowest, leading.starved)
 

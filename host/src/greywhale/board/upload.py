@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TypedDict
 
 from greywhale.base.errors import UserError
-from greywhale.base.types import Crc, Progress
+from greywhale.base.types import Crc, Progress, show_no_progress
 from greywhale.board.device import Device
 from greywhale.board.refusal import RefusedError
 from greywhale.files import controller as controller_file
@@ -53,9 +53,8 @@ def read_parameter(device: Device, name: str) -> int:
     return reply.value
 
 
-def read_parameters(device: Device, progress: Progress | None = None) -> ParameterTable:
+def read_parameters(device: Device, report: Progress = show_no_progress) -> ParameterTable:
     """Read the running set; its CRC proves that it is whole."""
-    report = progress or _report_nothing
     values = []
     for parameter in schema.PARAMETERS:
         report("reading parameters", parameter.index / len(schema.PARAMETERS))
@@ -70,31 +69,30 @@ def read_parameters(device: Device, progress: Progress | None = None) -> Paramet
     return ParameterTable(tuple(values), device.hello.board, device.port)
 
 
-def upload_controller(device: Device, path: str | Path, progress: Progress | None = None) -> Uploaded:
+def upload_controller(device: Device, path: str | Path, report: Progress = show_no_progress) -> Uploaded:
     """Run and store the controllers of a controller.toml; every other parameter keeps its value."""
-    return change_parameters(device, controller_file.load(path).raw_values(), progress)
+    return change_parameters(device, controller_file.load(path).raw_values(), report)
 
 
 def change_parameters(
     device: Device,
     changes: Mapping[str, int],
-    progress: Progress | None = None,
+    report: Progress = show_no_progress,
     running: ParameterTable | None = None,
 ) -> Uploaded:
     """Take the running set, which is read unless given, make the `changes` (name -> raw value), run and store it."""
     if running is None:
-        running = read_parameters(device, progress)
+        running = read_parameters(device, report)
     wanted = running.with_raw(changes)
-    upload_set(device, wanted, progress)
+    upload_set(device, wanted, report)
     pairs = zip(schema.PARAMETERS, running.raw, wanted.raw, strict=True)
     return Uploaded(wanted, tuple(parameter.name for parameter, before, after in pairs if before != after))
 
 
 def upload_set(
-    device: Device, table: ParameterTable, progress: Progress | None = None, save_wait_s: float = SAVE_WAIT_S
+    device: Device, table: ParameterTable, report: Progress = show_no_progress, save_wait_s: float = SAVE_WAIT_S
 ) -> None:
     """Stage, apply and save a whole set, then check that the board runs it. A save may take `save_wait_s`."""
-    report = progress or _report_nothing
     _apply(device, table, report, save_wait_s)
     _when_not_saving(device, save_wait_s, lambda: device.ask(schema.ParamSaveRequest()))
     report("saving parameters", 0.0)
@@ -102,9 +100,9 @@ def upload_set(
     _prove(device, table)
 
 
-def run_set(device: Device, table: ParameterTable, progress: Progress | None = None) -> None:
+def run_set(device: Device, table: ParameterTable, report: Progress = show_no_progress) -> None:
     """Run a whole set without storing it: after its next start, the board runs the stored set again."""
-    _apply(device, table, progress or _report_nothing, SAVE_WAIT_S)
+    _apply(device, table, report, SAVE_WAIT_S)
     _prove(device, table)
 
 
@@ -170,7 +168,3 @@ def _wait_until_saved(device: Device, wait_s: float) -> None:
                 "reset the board and upload again."
             )
         device.wait(_POLL_S)
-
-
-def _report_nothing(what: str, fraction: float) -> None:
-    """Progress nothing: nobody looks."""

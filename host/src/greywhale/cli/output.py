@@ -14,7 +14,7 @@ from typing import Any, TypedDict, TypeVar
 import click
 
 from greywhale.base.errors import MOST_WORKERS, printable
-from greywhale.base.types import NotedProgress
+from greywhale.base.types import NotedProgress, show_no_progress
 from greywhale.cli import completion, tracing
 from greywhale.cli.wrapping import fit
 
@@ -102,7 +102,7 @@ def json_of(result: Mapping[str, object]) -> str:
 
 
 @contextlib.contextmanager
-def progress(brief: bool = False) -> Iterator[NotedProgress | None]:
+def progress(brief: bool = False) -> Iterator[NotedProgress]:
     """Show the running step on stderr; with --quiet nobody looks, unless the steps are logged.
 
     Without a terminal the steps of a `brief` verb, which takes seconds, are not told one by one. With --json all is
@@ -114,7 +114,7 @@ def progress(brief: bool = False) -> Iterator[NotedProgress | None]:
     steps = Steps() if logger.isEnabledFor(logging.INFO) else None
     context = click.get_current_context(silent=True)
     if context is not None and context.meta.get(QUIET):
-        yield steps
+        yield steps or show_no_progress
         return
     # What draws on a terminal takes a moment to import.
     from greywhale.cli.display import shown

@@ -10,7 +10,7 @@ from typing import Any
 
 from greywhale.base.formats.whole import make_folder
 from greywhale.base.study import Workers, run_study
-from greywhale.base.types import NotedProgress
+from greywhale.base.types import NotedProgress, show_no_progress
 from greywhale.reproduce.request import Request
 from greywhale.reproduce.tasks import tasks_of
 
@@ -20,15 +20,14 @@ SOURCE = Path(__file__).resolve().parents[1]
 SHOWING = {"cli", "drawing", "pages", "pictures", "render"}
 
 
-def run(request: Request, folder: Path, workers: Workers, report: NotedProgress | None = None) -> Results:
+def run(request: Request, folder: Path, workers: Workers, report: NotedProgress = show_no_progress) -> Results:
     """Everything that a request asks for, by the tasks' keys. An interrupt keeps what is done in `folder`."""
     make_folder(folder)
     about = {"request": request.as_dict(), "program": program_digest()}
     tasks = tasks_of(request)
 
     def tell(what: str, share: float) -> None:
-        if report is not None:
-            report(what, share, f"{round(share * len(tasks))} of {len(tasks)} parts")
+        report(what, share, f"{round(share * len(tasks))} of {len(tasks)} parts")
 
     return run_study(tasks, workers, results_file(request, folder), tell, about=about, what="reproducing the paper")
 

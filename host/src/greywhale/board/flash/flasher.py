@@ -37,14 +37,13 @@ def flash(
     board: str | None = None,
     firmware_dir: str | Path | None = None,
     hex_file: str | Path | None = None,
-    progress: Progress | None = None,
+    report: Progress = show_no_progress,
 ) -> schema.HelloReply:
     """Flash the board on `port` and return the new firmware's greeting.
 
     `board` is mega or nano; without it the port or the bootloader tells. The image is `hex_file`, else it is built from
     `firmware_dir` or from the checkout this package runs from, else it is the one that came with the package.
     """
-    report = progress or show_no_progress
     expected = _expected_board(port, board)
     image = None if hex_file is None else read_image(Path(hex_file))
     sources = platformio.find_sources(firmware_dir) if image is None else None

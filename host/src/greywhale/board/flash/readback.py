@@ -64,17 +64,16 @@ def shipped_image(board: str) -> Image:
 
 
 def compare_image(
-    port: str, hex_file: Path | None = None, report: Progress | None = None
+    port: str, hex_file: Path | None = None, report: Progress = show_no_progress
 ) -> tuple[Comparison, BootCode]:
     """Read back what the board holds and compare it with `hex_file`, or with the shipped image of that board; and look
     at its bootloader."""
-    told = report or show_no_progress
     named = None if hex_file is None else read_image(hex_file)
     target, found = find_target(port, None)
     image = named or shipped_image(target.name)
     check_image(image, target.board, port)
     held = held_blocks(image)
-    memory = read_flash(port, found, [*held, *_boot_blocks(target.board)], told)
+    memory = read_flash(port, found, [*held, *_boot_blocks(target.board)], report)
     count = sum(map(len, held))
     return compare(image, held, memory[:count]), look_at_boot_code(found, memory[count:])
 

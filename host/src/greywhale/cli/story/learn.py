@@ -12,10 +12,10 @@ import numpy as np
 
 from greywhale.arm import ArmParameters
 from greywhale.arm.parameters import Friction, Gear
+from greywhale.base.types import NotedProgress, show_no_progress
 from greywhale.files.arm import load_arm
 
 if TYPE_CHECKING:
-    from greywhale.base.types import NotedProgress
     from greywhale.files.log import Log
     from greywhale.identify import IdentificationResult
     from greywhale.protocol.table import ParameterTable
@@ -41,8 +41,7 @@ def learn(
     nominal: ArmParameters,
     folder: Path,
     budget: int | None = None,
-    seed: int = 0,
-    progress: NotedProgress | None = None,
+    report: NotedProgress = show_no_progress,
 ) -> Learnt:
     """Write model.toml and controller.toml into `folder`; an interrupt ends it with KeyboardInterrupt.
 
@@ -56,14 +55,14 @@ def learn(
 
     model_file, controller_file = folder / "model.toml", folder / "controller.toml"
     started = time.monotonic()
-    identification = identify([fit], nominal, validate=validate, tables=tables, seed=seed, report=progress)
+    identification = identify([fit], nominal, validate=validate, tables=tables, report=report)
     identification.save(model_file)
     if not identification.complete:
         raise KeyboardInterrupt
     identified = time.monotonic()
     # The caller shows the model's doubts: a demo that stopped at one would show nothing.
-    model = load_model(model_file, seed=seed, force=True)
-    tuning = tune(model, budget=budget, seed=seed, report=progress, floors=False)
+    model = load_model(model_file, force=True)
+    tuning = tune(model, budget=budget, report=report, floors=False)
     save(tuning, controller_file)
     if not tuning.complete:
         raise KeyboardInterrupt

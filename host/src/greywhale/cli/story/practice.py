@@ -41,14 +41,13 @@ def practise(
     base: ParameterTable,
     folder: Path,
     seconds: float = PRACTICE_S,
-    progress: Progress | None = None,
+    report: Progress = show_no_progress,
 ) -> list[Log]:
     """Record practice of about `seconds` into `folder`, then the checks: the log to fit first, then those to validate.
 
     `nominal` is what is known of the arm; `base` the parameters that the board has besides its controllers. A check
     with which the arm hunts proves nothing of the arm: it ends early, and is left out.
     """
-    report = progress or show_no_progress
 
     def named(name: str) -> Progress:
         return lambda what, fraction: report(f"{name}: {what}", fraction)

@@ -12,7 +12,7 @@ import numpy as np
 
 from greywhale.base.bench_process import RunningBench
 from greywhale.base.errors import UserError
-from greywhale.base.types import Floats, Progress
+from greywhale.base.types import Floats, Progress, show_no_progress
 from greywhale.board.device import Device
 from greywhale.board.record import Recording, record, record_led
 from greywhale.board.stream import stream
@@ -52,7 +52,7 @@ def record_motion(
     leader: Path,
     log: Path,
     controller: Path | None = None,
-    progress: Progress | None = None,
+    report: Progress = show_no_progress,
 ) -> Recorded:
     """Let the follower follow the whole motion of the file `leader` into `log`; upload `controller` first, if given.
 
@@ -62,9 +62,9 @@ def record_motion(
     length = LEAD_S + load_leader(leader).duration_s + SETTLE_S
 
     def play(device: Device) -> Recording:
-        return record(device, log, length, enable=True, progress=progress)
+        return record(device, log, length, enable=True, progress=report)
 
-    return _recorded(bench, leader, controller, progress, play)
+    return _recorded(bench, leader, controller, report, play)
 
 
 def record_excitation(
@@ -73,21 +73,21 @@ def record_excitation(
     motion: Trajectory,
     log: Path,
     controller: Path | None = None,
-    progress: Progress | None = None,
+    report: Progress = show_no_progress,
 ) -> Recorded:
     """Lead the follower along `motion` into `log`; the person holds the leader still, as in the file `rest`."""
 
     def play(device: Device) -> Recording:
-        return record_led(device, log, motion, progress=progress)
+        return record_led(device, log, motion, progress=report)
 
-    return _recorded(bench, rest, controller, progress, play)
+    return _recorded(bench, rest, controller, report, play)
 
 
 def _recorded(
     bench: RunningBench,
     leader: Path,
     controller: Path | None,
-    progress: Progress | None,
+    report: Progress,
     play: Callable[[Device], Recording],
 ) -> Recorded:
     """Give the person the motion `leader` and the board the controller, and record."""
@@ -95,7 +95,7 @@ def _recorded(
     started = time.monotonic()
     with Device(bench.port) as device:
         if controller is not None:
-            upload_controller(device, controller, progress)
+            upload_controller(device, controller, report)
         uploaded = time.monotonic()
         running = read_parameters(device)
         _wait_for_the_arms(bench, device, leader, running.joints_in_use)

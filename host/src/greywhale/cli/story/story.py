@@ -56,9 +56,8 @@ class DemoOptions:
     prove: bool = False  # prove the tuned controllers on the arm, as `greywhale commission` does
 
 
-def run(options: DemoOptions, progress: NotedProgress | None = None) -> DemoResult:
+def run(options: DemoOptions, report: NotedProgress = show_no_progress) -> DemoResult:
     """Tell the story; everything it shows is in the folder `options.out` afterwards."""
-    report = progress or show_no_progress
     started = time.monotonic()
     motion = _motion(options)
     arm = default_arm() if options.arm is None else load_arm(options.arm)
@@ -121,7 +120,7 @@ class _Stage:
         nominal = load_arm("white_box") if options.arm is None else learn.arm_as_drawn(self._arm)
         logs = practise(self._bench, nominal, self._base, options.out, options.practice_s, self._report)
         known = tables(self._base)
-        return learn.learn(logs[0], logs[1:], known, nominal, options.out, options.budget, progress=self._report)
+        return learn.learn(logs[0], logs[1:], known, nominal, options.out, options.budget, report=self._report)
 
     def prove(self, learnt: Learnt) -> None:
         """Try the tuned controllers and variants of them on the arm, while the person holds the leader still."""
@@ -186,7 +185,7 @@ def _draw(options: DemoOptions, runs: list[Run], supply_v: float) -> Path:
 def _put_firmware_on(bench: RunningBench, options: DemoOptions, report: NotedProgress) -> HelloReply:
     """Flash the board, as with a real one; its greeting."""
     if flash.find_avrdude() is not None:
-        return flash.flash(bench.port, options.board, progress=report)
+        return flash.flash(bench.port, options.board, report=report)
     report("avrdude is not installed: the board comes with its firmware", 0.0)
     with Device(bench.port) as device:
         return device.hello
