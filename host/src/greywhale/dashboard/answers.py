@@ -94,6 +94,12 @@ class Answers:
             "arms": arm_names(),
         }
 
+    def history(self, tick: str | None) -> bytes:
+        """The frames of the samples kept, from a tick on if one is given."""
+        if tick is not None and not (tick.isascii() and tick.isdigit() and int(tick) < 1 << 32):
+            raise BadUsage(f"from is {tick[:20]}; it must be a tick, 0 to 4294967295.")
+        return self.relay.history.since(None if tick is None else int(tick))
+
     def describe_arm(self, file: str | None) -> ArmFacts:
         return arm_facts(self._arm(file))
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import socket
 from collections.abc import Awaitable, Callable
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +16,6 @@ from starlette.responses import JSONResponse, Response
 from starlette.routing import BaseRoute, Mount, Route, WebSocketRoute
 from starlette.staticfiles import StaticFiles
 from starlette.types import ASGIApp
-from starlette.websockets import WebSocket
 
 from greywhale.base.errors import BadUsage, UserError
 from greywhale.dashboard.answers import Answers
@@ -41,9 +41,9 @@ def require_page(page: Path = PAGE) -> Path:
 def application(answers: Answers, page: Path, token: str, port: int) -> ASGIApp:
     """All that the server does, at this port of the loopback, for who has the token."""
     routes: list[BaseRoute] = [
-        WebSocketRoute("/board", _socket(lambda socket: serve_board(socket, answers.relay))),
-        WebSocketRoute("/host", _socket(lambda socket: serve_host(socket, answers.jobs))),
-        Route("/history", _history(answers)),
+        WebSocketRoute("/board", partial(serve_board, relay=answers.relay)),
+        WebSocketRoute("/host", partial(serve_host, jobs=answers.jobs)),
+        Route("/history", _told(lambda asked: answers.history(asked.get("from")))),
         Route("/state", _told(lambda asked: answers.state())),
         Route("/arm", _told(lambda asked: answers.describe_arm(asked.get("file")))),
         Route("/controller", _told(lambda asked: answers.controller(asked.get("file", "")))),
@@ -96,26 +96,6 @@ def make_server(app: ASGIApp) -> uvicorn.Server:
             lifespan="off",
         )
     )
-
-
-def _socket(serve: Callable[[WebSocket], Awaitable[None]]) -> Callable[[WebSocket], Awaitable[None]]:
-    """What Starlette takes for a WebSocket's endpoint."""
-
-    async def serve_it(socket: WebSocket) -> None:
-        await serve(socket)
-
-    return serve_it
-
-
-def _history(answers: Answers) -> Callable[[Request], Awaitable[Response]]:
-    async def answer(request: Request) -> Response:
-        given = request.query_params.get("from")
-        if given is not None and not (given.isascii() and given.isdigit() and int(given) < 1 << 32):
-            return JSONResponse({"error": f"from is {given[:20]}; it must be a tick, 0 to 4294967295."}, 400)
-        frames = await asyncio.to_thread(answers.relay.history.since, None if given is None else int(given))
-        return Response(frames, media_type=_BYTES)
-
-    return answer
 
 
 def _told(answer: Callable[[dict[str, Any]], object]) -> Callable[[Request], Awaitable[Response]]:
