@@ -21,9 +21,9 @@ import contextlib, sys
 from pathlib import Path
 from greywhale.dashboard import run, server
 server.require_page = lambda: Path(".")
-options = run.Options(sys.argv[1], "default", Path("."), 0, list, ["false"])
 with contextlib.suppress(KeyboardInterrupt):
-    run.serve(options, None, lambda address: print(address, flush=True))
+    ready = lambda address: print(address, flush=True)
+    run.serve(sys.argv[1], "default", Path("."), 0, list, ["false"], None, ready)
 """
 
 

@@ -83,16 +83,10 @@ def command(
         from greywhale.dashboard import run
 
         bench = None if starting is None else starting.result()
-        options = run.Options(
-            port=port if bench is None else bench.port,
-            arm=str(arm or "default"),
-            folder=folder,
-            http_port=http_port,
-            catalogue=_catalogue,
-            program=(sys.executable, "-m", "greywhale.cli.job"),
-        )
+        held_port = port if bench is None else bench.port
+        program = (sys.executable, "-m", "greywhale.cli.job")
         with contextlib.suppress(KeyboardInterrupt):  # the usual end
-            run.serve(options, bench, ready)
+            run.serve(held_port, str(arm or "default"), folder, http_port, _catalogue, program, bench, ready)
 
 
 @contextlib.contextmanager

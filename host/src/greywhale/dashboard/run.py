@@ -6,7 +6,6 @@ import contextlib
 import secrets
 import signal
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from types import FrameType
 
@@ -25,35 +24,36 @@ from greywhale.dashboard.relay import Relay
 from greywhale.dashboard.verbs import VerbFacts
 
 
-@dataclass(frozen=True)
-class Options:
-    """What is served: `port` is the board's, None for the only one found; `catalogue` and `program` as in `Jobs`."""
+def serve(
+    port: str | None,
+    arm: str,
+    path: Path,
+    http_port: int,
+    catalogue: Callable[[], list[VerbFacts]],
+    program: Sequence[str],
+    bench: RunningBench | None,
+    ready: Callable[[str], None],
+) -> None:
+    """Serve until Ctrl-C; `ready` gets the address, with its token, when the page can be opened.
 
-    port: str | None
-    arm: str
-    folder: Path
-    http_port: int
-    catalogue: Callable[[], list[VerbFacts]]
-    program: Sequence[str]
-
-
-def serve(options: Options, bench: RunningBench | None, ready: Callable[[str], None]) -> None:
-    """Serve until Ctrl-C; `ready` gets the address, with its token, when the page can be opened."""
+    `port` is the board's, None for the only one found; verbs work in the folder `path`; `catalogue` and `program` are
+    as in `Jobs`.
+    """
     page = server.require_page()
-    folder, relay = Folder(options.folder), Relay(History())
-    holder = PortHolder(relay, options.port)
-    jobs = Jobs(relay, folder, options.catalogue, options.program, holder.away)
-    answers = Answers(relay, folder, options.arm, jobs, None if bench is None else BenchControls(bench, folder))
+    folder, relay = Folder(path), Relay(History())
+    holder = PortHolder(relay, port)
+    jobs = Jobs(relay, folder, catalogue, program, holder.away)
+    answers = Answers(relay, folder, arm, jobs, None if bench is None else BenchControls(bench, folder))
     token = secrets.token_urlsafe(24)
     with contextlib.ExitStack() as held:
-        listener = held.enter_context(server.listen(options.http_port))
-        port: int = listener.getsockname()[1]
-        running = server.make_server(server.application(answers, page, token, port))
+        listener = held.enter_context(server.listen(http_port))
+        served: int = listener.getsockname()[1]
+        running = server.make_server(server.application(answers, page, token, served))
         held.callback(holder.close)
         held.callback(jobs.close)  # first, while their board is there
         held.enter_context(_ending_on_hangup(running))
         holder.start()
-        ready(f"http://127.0.0.1:{port}/#token={token}")
+        ready(f"http://127.0.0.1:{served}/#token={token}")
         running.run([listener])
 
 
