@@ -13,6 +13,10 @@ from greywhale.protocol.firmware import JOINTS
 
 # Back-EMF may be at most this share of a motor's damping, so that viscous friction stays positive.
 BACK_EMF_SHARE = 0.95
+# Keys of an arm file's joint -> a plant's columns.
+_FRICTION = {name: name for name in ("coulomb", "breakaway", "stribeck_velocity", "creep_velocity")}
+_FRICTION["load"] = "load_friction"
+_GEAR = {"half_gap": "half_gap", "stiffness": "stiffness", "damping": "mesh_damping", "drag": "drag"}
 
 
 def arm_of(
@@ -30,19 +34,9 @@ def arm_of(
         if arm.joint[joint].fixed:
             continue
         one["motor"] = _motor(arm, joint, plant)
-        one["friction"] = {
-            "coulomb": _cell(plant, joint, "coulomb"),
-            "breakaway": max(_cell(plant, joint, "breakaway"), _cell(plant, joint, "coulomb")),
-            "stribeck_velocity": _cell(plant, joint, "stribeck_velocity"),
-            "load": _cell(plant, joint, "load_friction"),
-            "creep_velocity": _cell(plant, joint, "creep_velocity"),
-        }
-        one["gear"] = {
-            "half_gap": _cell(plant, joint, "half_gap"),
-            "stiffness": _cell(plant, joint, "stiffness"),
-            "damping": _cell(plant, joint, "mesh_damping"),
-            "drag": _cell(plant, joint, "drag"),
-        }
+        one["friction"] = {key: _cell(plant, joint, name) for key, name in _FRICTION.items()}
+        one["friction"]["breakaway"] = max(one["friction"]["breakaway"], one["friction"]["coulomb"])
+        one["gear"] = {key: _cell(plant, joint, name) for key, name in _GEAR.items()}
         pot = data["follower_pots"]["joint"][joint]
         pot["play"], pot["lag"] = _cell(plant, joint, "pot_play"), _cell(plant, joint, "pot_lag")
         pot["centre"] = float(pot["centre"] + zero[joint])

@@ -12,14 +12,13 @@ from typing import Any
 
 import numpy as np
 
-from greywhale.arm.fewer_joints import complete
+from greywhale.arm.fewer_joints import UP, complete
 from greywhale.arm.parameters import JOINT_NAMES, ArmParameters
 from greywhale.arm.urdf import Body, TurningJoint, read_chain
 from greywhale.base.errors import BadUsage, UserError, cut
 from greywhale.base.formats import toml_file
 from greywhale.base.types import Floats
 
-UP = np.array([0.0, 0.0, 1.0])
 PARALLEL = math.cos(math.radians(1.0))
 ACROSS = math.sin(math.radians(1.0))
 BESIDE_M = 1e-3  # axes that shall meet may pass each other so far

@@ -245,13 +245,7 @@ class ArmParameters(Table):
             return _native.physical_actuator(**(_NO_MOTOR | {"torque_constant": 0.0}))
         motor = self.joint[joint].motor
         equation = _native.physical_actuator if self.motor_equation == "physical" else _native.paper_actuator
-        return equation(
-            inertia=motor.inertia,
-            resistance=motor.resistance + self.drive.resistance,
-            torque_constant=motor.torque_constant,
-            viscous=motor.viscous,
-            gear_ratio=motor.gear_ratio,
-        )
+        return equation(**(dict(motor) | {"resistance": motor.resistance + self.drive.resistance}))
 
     def native(self) -> _native.ArmParameters:
         """The same numbers for the C++ plant."""
@@ -271,22 +265,10 @@ class ArmParameters(Table):
             rigid = {"coulomb": 0.0, "breakaway": 0.0, "stribeck_velocity": 1.0}
             rigid |= dict.fromkeys(("half_gap", "stiffness", "damping", "drag", "min", "max"), 0.0)
             return _native.Joint(actuator=self.actuator(index), **rigid)
-        return _native.Joint(
-            actuator=self.actuator(index),
-            coulomb=joint.friction.coulomb,
-            breakaway=joint.friction.breakaway,
-            stribeck_velocity=joint.friction.stribeck_velocity,
-            load_friction=joint.friction.load,
-            creep_velocity=joint.friction.creep_velocity,
-            half_gap=joint.gear.half_gap,
-            stiffness=joint.gear.stiffness,
-            damping=joint.gear.damping,
-            drag=joint.gear.drag,
-            min=joint.stops.min,
-            max=joint.stops.max,
-            pot_play=pot.play,
-            pot_lag=pot.lag,
-        )
+        friction = dict(joint.friction)
+        friction["load_friction"] = friction.pop("load")
+        parts = friction | dict(joint.gear) | dict(joint.stops)
+        return _native.Joint(actuator=self.actuator(index), pot_play=pot.play, pot_lag=pot.lag, **parts)
 
 
 def _native_link(link: Link) -> _native.Link:

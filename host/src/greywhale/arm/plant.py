@@ -30,15 +30,5 @@ class Potentiometers(_native.Potentiometers):
 
 def native_potentiometers(bank: PotentiometerBank, noise: bool = True) -> list[_native.Potentiometer]:
     """The four potentiometers for the native code, on request without noise."""
-    return [
-        _native.Potentiometer(
-            track=pot.track,
-            centre=pot.centre,
-            direction=pot.direction,
-            noise=pot.noise if noise else 0.0,
-            linearity=pot.linearity,
-            play=pot.play,
-            lag=pot.lag,
-        )
-        for pot in bank.joint
-    ]
+    quiet = {} if noise else {"noise": 0.0}
+    return [_native.Potentiometer(**(dict(pot) | quiet)) for pot in bank.joint]

@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from greywhale.arm.parameters import USUAL_TRACK_RAD
 from greywhale.base.errors import UserError
 from greywhale.base.types import Floats
 from greywhale.board.calibrate.motors import Motor, examine_motor, remarks
@@ -25,8 +26,6 @@ from greywhale.protocol import schema
 from greywhale.protocol.firmware import JOINTS
 from greywhale.protocol.joints import ALL, Joints
 from greywhale.protocol.table import ParameterTable
-
-USUAL_TRACK_RAD = float(np.radians(300.0))
 
 
 @dataclass(frozen=True)
