@@ -55,7 +55,7 @@ def test_all_verbs_run_with_what_windows_has_or_say_what_they_need(tmp_path: Pat
     program = """
 from greywhale.cli import verbs
 from greywhale.cli.entry import run
-for module, _ in verbs.VERBS.values():
+for module in verbs.VERBS:
     importlib.import_module(f"greywhale.cli.{module}")
 print([run(words.split()) for words in sys.argv[1:]])
 """

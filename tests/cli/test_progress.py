@@ -13,6 +13,7 @@ from pathlib import Path
 import click
 import pytest
 
+from greywhale.base.types import show_no_progress
 from greywhale.cli import entry
 from greywhale.cli.output import QUIET, progress
 from tests.board.fake_board import FakeBoard
@@ -73,7 +74,7 @@ def test_quiet_shows_nothing() -> None:
     with click.Context(click.Command("tune")) as context:
         context.meta[QUIET] = True
         with progress() as report:
-            assert report is None
+            assert report is show_no_progress
 
 
 def test_a_reader_that_has_gone_ends_no_work(monkeypatch: pytest.MonkeyPatch) -> None:

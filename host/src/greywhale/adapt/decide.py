@@ -111,7 +111,7 @@ class _Trial:
 class Adaptation:
     """See the head of this file. `table` is what the board runs at the start."""
 
-    def __init__(self, model: Model, table: ParameterTable, *, budget: int, seed: int = 0, threads: int = 1) -> None:
+    def __init__(self, model: Model, table: ParameterTable, *, budget: int, seed: int = 0) -> None:
         self.model = model
         self.start = self.running = self.kept = table
         self.live = LiveModel.of(model.arm)
@@ -119,7 +119,7 @@ class Adaptation:
         self.searches = 0
         self.doubt = ""  # why the model proposes nothing now
         self.wish: Wish | None = None
-        self._budget, self._seed, self._threads = budget, seed, threads
+        self._budget, self._seed = budget, seed
         self._own: list[Stretch] = []  # with the kept set
         self._newest: deque[Stretch] = deque(maxlen=FITTED)  # with any
         self._age = self._age_asked = 0  # stretches since those that the model knows; and since those of the task
@@ -228,7 +228,7 @@ class Adaptation:
     def _ask(self, table: ParameterTable, stretches: Iterable[Stretch], budget: int) -> Task:
         self._thinking, self._age_asked = True, 0
         start, seed = controllers_of(self.start), self._seed + self.searches
-        return Task(self.model, self.live, table, start, tuple(stretches), budget, seed, self._threads)
+        return Task(self.model, self.live, table, start, tuple(stretches), budget, seed)
 
     # --- how it decides -----------------------------------------------------------------------------------------------
 

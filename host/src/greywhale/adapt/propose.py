@@ -47,7 +47,6 @@ class Task:
     recent: tuple[Stretch, ...] = field(repr=False)
     budget: int
     seed: int
-    threads: int = 1
 
 
 @dataclass(frozen=True)
@@ -78,7 +77,7 @@ def propose(task: Task) -> Proposal:
         replace(task.model, table=task.table, plants=live.plants, doubts=(), travel=None),
         budget=task.budget,
         seed=task.seed,
-        threads=task.threads,
+        threads=1,
         start=running,
         floors=False,
         motion=motion_of(task.recent),

@@ -27,4 +27,3 @@ class AdaptationRequest:
     seconds: float = SECONDS
     budget: int = BUDGET
     seed: int = 0
-    threads: int = 1

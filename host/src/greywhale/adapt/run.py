@@ -91,9 +91,7 @@ class _Session:
         self._device, self._request, self._start = device, request, start
         self._searches, self._report = searches, report
         quick = with_quick_start(start)
-        self._core = Adaptation(
-            replace(model, table=quick), quick, budget=request.budget, seed=request.seed, threads=request.threads
-        )
+        self._core = Adaptation(replace(model, table=quick), quick, budget=request.budget, seed=request.seed)
         self._collector, self._changer = Collector(), SetChanger(device)
         self._rest, self._hunting = RestWatch(), HuntingStop()
         self._worked_s = 0.0

@@ -11,7 +11,7 @@ import click
 from greywhale.base.errors import MOST_SEED
 from greywhale.base.formats.whole import refuse_inputs
 from greywhale.base.study import LocalWorkers
-from greywhale.cli.output import json_option, overwrite_option, port_option, progress, show, tell
+from greywhale.cli.output import FILE, json_option, option, overwrite_option, port_option, progress, show, tell
 from greywhale.files.outputs import require_new
 from greywhale.protocol.ports import choose_port
 
@@ -23,30 +23,18 @@ MOST_SECONDS = 86_400.0
 
 
 @click.command("adapt")
-@click.argument("model", type=click.Path(path_type=Path))
-@click.option(
-    "--out",
-    "-o",
-    type=click.Path(path_type=Path),
-    default=Path("adapted.toml"),
-    show_default=True,
-    help="The controllers that are kept.",
-)
-@click.option(
+@click.argument("model", type=FILE)
+@option("--out", "-o", type=FILE, default="adapted.toml", help="The controllers that are kept.")
+@option(
     "--seconds",
     "-s",
     type=click.FloatRange(1.0, MOST_SECONDS),
     default=600.0,
-    show_default=True,
     help="Length of the work, by the board's clock.",
 )
-@click.option(
-    "--budget", type=click.IntRange(1, 100_000), default=300, show_default=True, help="Evaluations of each search."
-)
-@click.option(
-    "--seed", type=click.IntRange(0, MOST_SEED), default=0, show_default=True, help="Where all random numbers start."
-)
-@click.option("--store", is_flag=True, help="Store what was kept, without asking.")
+@option("--budget", type=click.IntRange(1, 100_000), default=300, help="Evaluations of each search.")
+@option("--seed", type=click.IntRange(0, MOST_SEED), default=0, help="Where all random numbers start.")
+@option("--store", is_flag=True, help="Store what was kept, without asking.")
 @overwrite_option
 @port_option
 @json_option("greywhale.adapt.result:Answer")
@@ -77,15 +65,7 @@ def command(
 
     refuse_inputs(out, model)
     require_new(overwrite, out)
-    request = AdaptationRequest(
-        port=choose_port(port),
-        model=model,
-        out=out,
-        workers=LocalWorkers(1),
-        seconds=seconds,
-        budget=budget,
-        seed=seed,
-    )
+    request = AdaptationRequest(choose_port(port), model, out, LocalWorkers(1), seconds, budget, seed)
 
     with progress() as report:
         outcome = adapt(request, report)

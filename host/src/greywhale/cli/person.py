@@ -5,13 +5,13 @@ from __future__ import annotations
 import os
 import shutil
 import sys
-import textwrap
 
 import click
 
 from greywhale.base import system
 from greywhale.base.errors import UserError, cut
 from greywhale.board.calibrate import Answer
+from greywhale.cli.output import tell
 
 WORDS = {"back": Answer.BACK, "again": Answer.AGAIN, "skip": Answer.SKIP, "yes": Answer.DONE, "": Answer.DONE}
 WORDS |= {word[:1]: answer for word, answer in WORDS.items()}
@@ -62,11 +62,8 @@ class Terminal:
         return word not in NO
 
     def tell(self, what: str) -> None:
-        if self._live:
-            width = min(120, self._columns())
-            what = "\n".join(textwrap.fill(line, width) if len(line) > width else line for line in what.splitlines())
-            self.close()
-        click.echo(what, err=True)
+        self.close()
+        tell(what)
 
     def close(self) -> None:
         """Take the live reading away: something else is printed next."""

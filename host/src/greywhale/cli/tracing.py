@@ -44,8 +44,6 @@ class _Terminal(_Quiet):
 class _File(_Quiet, logging.FileHandler):
     """Times with milliseconds and the offset of the time zone."""
 
-    default_time_format = "%Y-%m-%dT%H:%M:%S"
-
     def __init__(self, path: Path) -> None:
         super().__init__(path, encoding="utf-8")
         self.setFormatter(_Lines("%(asctime)s %(levelname)s %(name)s: %(message)s"))

@@ -11,32 +11,32 @@ from greywhale.cli import tracing
 from greywhale.cli.group import Group
 from greywhale.cli.output import FILE, QUIET, option
 
-# verb -> (module in this folder, what it does)
+# Each verb, which has a module in this folder, and what it does.
 VERBS = {
-    "demo": ("demo", "The whole story on the simulated bench in one go, pictures at the end."),
-    "sim": ("sim", "Start the simulated bench and print its serial port."),
-    "dashboard": ("dashboard", "The arm live in the browser: what it does, its controllers, every verb."),
-    "ports": ("ports", "List the serial ports and what is behind them."),
-    "flash": ("flash", "Put the firmware onto a board."),
-    "info": ("info", "Tell a board's version, state, faults and counters."),
-    "doctor": ("doctor", "Say what is wrong with this set-up, and how to mend it."),
-    "calibrate": ("calibrate", "From potentiometers mounted anyhow to angles, directions and limits."),
-    "udev": ("udev", "Print the rules that let this user open an Arduino's port."),
-    "upload": ("upload", "Run and store the controllers of a controller.toml."),
-    "params": ("params", "Read and change a board's parameter table."),
-    "record": ("record", "Record leader, follower and voltages into a CSV log."),
-    "replay": ("replay", "Lead the arm along a motion from a file and record it."),
-    "stop": ("stop", "Stop the motors; clear a fault."),
-    "clutch": ("clutch", "Move the leader without the follower: disengage, engage, reset."),
-    "evaluate": ("evaluate", "Measure how well the follower followed in a log."),
-    "commission": ("commission", "Identify, tune and prove the controllers on the connected arm itself."),
-    "adapt": ("adapt", "Keep the controllers right while a person works with the arm."),
-    "identify": ("identify", "Find the arm that made a log: a model with its uncertainties."),
-    "tune": ("tune", "Find controllers for a model: a controller.toml for upload."),
-    "arm": ("arm", "Make an arm.toml: from a ruler, a scale and data sheets, or from a URDF."),
-    "export": ("export", "Write a controller as .fis (MATLAB), an arm as URDF or MJCF."),
-    "reproduce": ("reproduce", "The paper from end to end: every table and figure beside ours."),
-    "compare": ("compare", "Compare optimisers at equal budgets, over many seeds."),
+    "demo": "The whole story on the simulated bench in one go, pictures at the end.",
+    "sim": "Start the simulated bench and print its serial port.",
+    "dashboard": "The arm live in the browser: what it does, its controllers, every verb.",
+    "ports": "List the serial ports and what is behind them.",
+    "flash": "Put the firmware onto a board.",
+    "info": "Tell a board's version, state, faults and counters.",
+    "doctor": "Say what is wrong with this set-up, and how to mend it.",
+    "calibrate": "From potentiometers mounted anyhow to angles, directions and limits.",
+    "udev": "Print the rules that let this user open an Arduino's port.",
+    "upload": "Run and store the controllers of a controller.toml.",
+    "params": "Read and change a board's parameter table.",
+    "record": "Record leader, follower and voltages into a CSV log.",
+    "replay": "Lead the arm along a motion from a file and record it.",
+    "stop": "Stop the motors; clear a fault.",
+    "clutch": "Move the leader without the follower: disengage, engage, reset.",
+    "evaluate": "Measure how well the follower followed in a log.",
+    "commission": "Identify, tune and prove the controllers on the connected arm itself.",
+    "adapt": "Keep the controllers right while a person works with the arm.",
+    "identify": "Find the arm that made a log: a model with its uncertainties.",
+    "tune": "Find controllers for a model: a controller.toml for upload.",
+    "arm": "Make an arm.toml: from a ruler, a scale and data sheets, or from a URDF.",
+    "export": "Write a controller as .fis (MATLAB), an arm as URDF or MJCF.",
+    "reproduce": "The paper from end to end: every table and figure beside ours.",
+    "compare": "Compare optimisers at equal budgets, over many seeds.",
 }
 
 
@@ -49,14 +49,14 @@ class Verbs(Group):
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
         if cmd_name not in VERBS:
             return None
-        module = importlib.import_module(f"greywhale.cli.{VERBS[cmd_name][0]}")
+        module = importlib.import_module(f"greywhale.cli.{cmd_name}")
         command = module.command
         assert isinstance(command, click.Command)
         return command
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         with formatter.section("Verbs"):
-            formatter.write_dl([(verb, purpose) for verb, (_, purpose) in VERBS.items()])
+            formatter.write_dl(list(VERBS.items()))
 
 
 @click.group(cls=Verbs, context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
