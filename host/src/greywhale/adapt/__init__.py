@@ -3,8 +3,7 @@
 >>> outcome = adapt(AdaptationRequest(port, Path("model.toml"), Path("adapted.toml"), LocalWorkers(1)))
 """
 
-from greywhale.adapt.request import BUDGET, SECONDS, AdaptationRequest
 from greywhale.adapt.result import AdaptationResult
-from greywhale.adapt.run import adapt, store_kept
+from greywhale.adapt.run import BUDGET, SECONDS, AdaptationRequest, adapt, store_kept
 
 __all__ = ["BUDGET", "SECONDS", "AdaptationRequest", "AdaptationResult", "adapt", "store_kept"]

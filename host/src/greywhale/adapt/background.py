@@ -11,7 +11,7 @@ from greywhale.adapt.live_model import LiveModel
 from greywhale.adapt.propose import Proposal, Task, work_on
 from greywhale.base import system
 from greywhale.base.errors import UserError
-from greywhale.base.study.workers import Workers
+from greywhale.base.study import Workers
 
 # A search gives way to the program that listens to the board.
 NICENESS = 10

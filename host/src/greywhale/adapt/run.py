@@ -6,17 +6,18 @@ and the set from the start runs again, at the latest after the board's next star
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from pathlib import Path
 
 import numpy as np
 
 from greywhale.adapt.background import Background, background
 from greywhale.adapt.change import CLOSE_RAD, LEASE_MS, LOOK_EVERY, STILL_RAD, RestWatch, SetChanger, with_quick_start
 from greywhale.adapt.decide import Adaptation
-from greywhale.adapt.request import AdaptationRequest
 from greywhale.adapt.result import AdaptationResult, say
 from greywhale.adapt.stretch import Collector
 from greywhale.base.errors import UserError
+from greywhale.base.study import Workers
 from greywhale.base.types import NotedProgress, show_no_progress
 from greywhale.board.device import Device, hold_ctrl_c
 from greywhale.board.stream import Received, stream, why_stopped
@@ -29,12 +30,32 @@ from greywhale.protocol.firmware import ANGLE_LSB
 from greywhale.protocol.table import ParameterTable
 from greywhale.tune.model import Model, load_model
 
+# Evaluations of one search in the background.
+BUDGET = 300
+SECONDS = 600.0
 # The longest that a change of the set may take.
 MOST_OFF_TICKS = 1000
 # The first soft start, of the stored set.
 MOST_START_TICKS = 12_000
 # How long after a change errors are looked at (ticks).
 BUMP_TICKS = 400
+
+
+@dataclass(frozen=True)
+class AdaptationRequest:
+    """`seconds` of work on a port, by the board's clock. Controllers that are kept go into the file `out`.
+
+    `workers` do the searches; in this process alone (`SerialWorkers`) the board would wait for them, so only a bench in
+    lock step can bear that.
+    """
+
+    port: str
+    model: Path
+    out: Path
+    workers: Workers
+    seconds: float = SECONDS
+    budget: int = BUDGET
+    seed: int = 0
 
 
 def adapt(request: AdaptationRequest, report: NotedProgress = show_no_progress) -> AdaptationResult:

@@ -26,10 +26,9 @@
   ends it too, at once. What is done stays in the file.
 """
 
-from greywhale.base.study.local import LocalWorkers, SerialWorkers, choose_workers
 from greywhale.base.study.run import run_study
 from greywhale.base.study.task import Task, TaskFailed
-from greywhale.base.study.workers import Workers
+from greywhale.base.study.workers import LocalWorkers, SerialWorkers, Workers, choose_workers
 
 __all__ = [
     "LocalWorkers",

@@ -1,10 +1,27 @@
-"""What a study needs to know of those who do its tasks."""
+"""Who does the tasks of a study: any executor, or workers on this machine: this process, or processes of its own.
+
+The processes are spawned, not forked: a fork would copy the state of other threads (a progress bar's, for example) with
+their locks. They end with this process, however it ends, and at once when a study is left.
+"""
 
 from __future__ import annotations
 
-from concurrent.futures import Executor
+import contextlib
+import multiprocessing
+import os
+import signal
+import threading
+from collections.abc import Callable, Iterator
+from concurrent.futures import Executor, Future, ProcessPoolExecutor
 from contextlib import AbstractContextManager, nullcontext
-from typing import Protocol
+from multiprocessing import resource_tracker
+from typing import Any, ParamSpec, Protocol, TypeVar
+
+from greywhale.base import system
+from greywhale.base.processes import safe_path
+
+P = ParamSpec("P")
+T = TypeVar("T")
 
 
 class Workers(Protocol):
@@ -29,3 +46,99 @@ class Given:
 
     def executor(self) -> AbstractContextManager[Executor]:
         return nullcontext(self._executor)
+
+
+class SerialWorkers:
+    """This process does one task after another."""
+
+    at_once = 1
+
+    @contextlib.contextmanager
+    def executor(self) -> Iterator[Executor]:
+        yield _Serial()
+
+
+class _Serial(Executor):
+    def submit(self, fn: Callable[P, T], /, *args: P.args, **kwargs: P.kwargs) -> Future[T]:
+        future: Future[T] = Future()
+        try:
+            future.set_result(fn(*args, **kwargs))
+        except Exception as error:
+            future.set_exception(error)
+        return future
+
+
+class LocalWorkers:
+    """So many processes on this machine; without a number, one for every processor."""
+
+    def __init__(self, count: int | None = None) -> None:
+        self.at_once = count or os.cpu_count() or 1
+
+    @contextlib.contextmanager
+    def executor(self) -> Iterator[Executor]:
+        context = multiprocessing.get_context("spawn")
+        theirs, ours = context.Pipe(duplex=False)
+        with safe_path():  # the pool's semaphores start multiprocessing's resource tracker
+            pool = _Pool(self.at_once, mp_context=context, initializer=_prepare, initargs=(theirs.recv,))
+        try:
+            yield pool
+        except BaseException:
+            ours.close()
+            raise
+        finally:
+            pool.shutdown(wait=True, cancel_futures=True)
+            ours.close()
+            theirs.close()
+
+
+def choose_workers(count: int | None = None) -> SerialWorkers | LocalWorkers:
+    """As --workers of a verb says: this process where it is 1, else so many; without it one for every processor."""
+    return SerialWorkers() if count == 1 else LocalWorkers(count)
+
+
+class _Pool(ProcessPoolExecutor):
+    def submit(self, fn: Callable[P, T], /, *args: P.args, **kwargs: P.kwargs) -> Future[T]:
+        with safe_path(), _hold_interrupts():  # it may start a process
+            return super().submit(fn, *args, **kwargs)
+
+
+def _prepare(receive: Callable[[], object]) -> None:
+    """In a new process: end when the other end of the line is closed, and leave Ctrl-C to the process there."""
+
+    def follow() -> None:
+        with contextlib.suppress(EOFError, OSError):
+            receive()
+        os._exit(1)
+
+    threading.Thread(target=follow, daemon=True).start()
+    # A handler that does nothing, and no mask: a program that a task starts then hears Ctrl-C.
+    signal.signal(signal.SIGINT, lambda number, frame: None)
+    system.hear_interrupts()
+
+
+@contextlib.contextmanager
+def _hold_interrupts() -> Iterator[None]:
+    """Hold Ctrl-C back while other processes are started.
+
+    Ctrl-C reaches all processes of a terminal, but only this one may answer it. The others inherit the mask. This
+    process may receive the signal in any of its threads, and notes it for later.
+    """
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    if system.HANDS_DOWN_DESCRIPTORS:  # else there is no tracker
+        # Starting it removes the mask, so it must run already when the others start.
+        resource_tracker.ensure_running()
+    noted: list[int] = []
+    before: dict[int, Any] = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
+    for number in before:
+        signal.signal(number, lambda number, frame: noted.append(number))
+    try:
+        with system.no_interrupts_for_children():
+            yield
+    finally:
+        for number, handler in before.items():
+            # None: not a handler of Python's, which cannot be put back.
+            signal.signal(number, signal.SIG_DFL if handler is None else handler)
+        if noted:
+            signal.raise_signal(noted[0])

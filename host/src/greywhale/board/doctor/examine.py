@@ -9,7 +9,7 @@ from pathlib import Path
 from greywhale.base.errors import UserError
 from greywhale.base.types import Progress, show_no_progress
 from greywhale.board.device import REPLY_WAIT_S, Device
-from greywhale.board.doctor import board, bootloader, image, link, pots
+from greywhale.board.doctor import board, link, memory, pots
 from greywhale.board.doctor.finding import Finding, Verdict
 from greywhale.board.doctor.port import examine_port
 from greywhale.board.flash.readback import compare_image
@@ -47,7 +47,7 @@ def examine(options: Options, report: Progress = show_no_progress) -> list[Findi
             with Device(options.port, restart=False) as device:
                 found += _examine_board(device, options, report)
                 motors_on = device.status().state not in AT_REST
-            found += _examine_image(options, motors_on, report) if options.image else [bootloader.not_examined()]
+            found += _examine_image(options, motors_on, report) if options.image else [memory.not_examined()]
     except UserError as error:
         found.append(Finding("board", Verdict.BAD, upper_first(error.message)))
     return found
@@ -72,12 +72,12 @@ def _examine_board(device: Device, options: Options, report: Progress) -> Iterat
 
 
 def _examine_image(options: Options, motors_on: bool, report: Progress) -> list[Finding]:
-    """The firmware on the board against the image, and its bootloader. The board restarts, so this comes last."""
+    """The firmware on the board against the image, and its memory. The board restarts, so this comes last."""
     if motors_on:
-        return [image.refused()]
+        return [memory.refused()]
     try:
         compared, boot_code = compare_image(options.port, options.hex_file, report)
         with Device(options.port):  # its firmware runs again
-            return [bootloader.examine_boot_code(boot_code), image.examine_comparison(compared)]
+            return [memory.examine_boot_code(boot_code), memory.examine_comparison(compared)]
     except UserError as error:
-        return [image.unread(upper_first(error.message))]
+        return [memory.unread(upper_first(error.message))]

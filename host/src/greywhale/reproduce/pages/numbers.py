@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 
 import numpy as np
 
 NONE = "–"
+LONGEST = 24  # letters of a range
 Number = float | None
 
 
@@ -48,3 +50,8 @@ def percent(before: float, after: float) -> str:
     """The same, as words."""
     change = lower(before, after)
     return f"{change:.1f} % lower" if change >= 0.0 else f"{-change:.1f} % higher"
+
+
+def keep_ranges(text: str) -> str:
+    """A line may break before a range such as (0.1 to 0.2), not inside of it."""
+    return re.sub(rf"\([^()]{{1,{LONGEST}}}\)", lambda found: found.group().replace(" ", "\xa0"), text)

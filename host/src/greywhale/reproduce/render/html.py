@@ -10,7 +10,7 @@ import jinja2
 
 from greywhale.base.formats.whole import write_text
 from greywhale.reproduce.pages.document import Block, Code, Document, Picture, Sheet
-from greywhale.reproduce.render.ranges import keep_ranges
+from greywhale.reproduce.pages.numbers import keep_ranges
 
 
 def write_html(document: Document, path: Path) -> Path:

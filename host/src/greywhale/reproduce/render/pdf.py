@@ -31,7 +31,7 @@ from reportlab.platypus import (
 from greywhale.base.formats.whole import write_whole
 from greywhale.pictures.plotting import matplotlib
 from greywhale.reproduce.pages.document import Block, Chapter, Code, Document, Entry, Picture, Sheet
-from greywhale.reproduce.render.ranges import keep_ranges
+from greywhale.reproduce.pages.numbers import keep_ranges
 
 rl_config.useA85 = 0  # pictures as bytes: as text they are a quarter larger, and Python is slow to write it
 
