@@ -85,7 +85,8 @@ def propose(task: Task) -> Proposal:
     best = (1.0, 0.0, running)
     for rows in (found, task.start):
         errors = foresee(live, task.table, rows, task.recent, live.plants)[:, -count:]
-        ratios = [_ratio(scale, one, was) for one, was in zip(errors, before, strict=True)]
+        sums = ([scale.expected(one).sum() for one in each] for each in (errors, before))
+        ratios = [float(now / was) for now, was in zip(*sums, strict=True)]
         if ratios[0] < best[0]:
             best = ratios[0], float(np.std(np.log(ratios))), rows
     return Proposal(live, best[2], best[0], best[1], scale)
@@ -111,10 +112,6 @@ def _count_alike(measured: Floats, predicted: Floats) -> int:
             break
         count += BLOCK
     return count
-
-
-def _ratio(scale: Scale, errors: Floats, before: Floats) -> float:
-    return float(scale.expected(errors).sum() / scale.expected(before).sum())
 
 
 def motion_of(stretches: Sequence[Stretch]) -> Trajectory:

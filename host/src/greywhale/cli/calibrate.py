@@ -173,10 +173,7 @@ def _text(result: Result) -> str:
         low, high = np.degrees(found.limits[joint])
         lines.append(f"{f'joint {joint}':12}{f'{low:.0f} to {high:.0f}':>18}{1e3 * result.apart[joint]:>17.1f} mrad")
     lines += [f"{f'joint {joint}':12}{'not in use':>18}" for joint in unused(found.joints)]
+    ways = {1: "turns as it should", -1: "turned the wrong way, motor_sign is changed"}
     if result.motors:
-        lines += ["", *(f"motor {one.joint}     {_way(one.sign)} ({one.volts:.1f} V)" for one in result.motors)]
+        lines += ["", *(f"motor {one.joint}     {ways[one.sign]} ({one.volts:.1f} V)" for one in result.motors)]
     return "\n".join([*lines, *([""] if result.remarks else []), *result.remarks])
-
-
-def _way(sign: int) -> str:
-    return "turns as it should" if sign > 0 else "turned the wrong way, motor_sign is changed"

@@ -33,7 +33,7 @@ class Terminal:
 
     def show(self, live: str) -> None:
         if self._live:
-            text = live[: self._columns() - 3]
+            text = live[: shutil.get_terminal_size().columns - 3]
             click.echo(f"\r  {text:<{self._shown}}", nl=False, err=True)
             self._shown = len(text)
 
@@ -70,9 +70,6 @@ class Terminal:
         if self._shown:
             click.echo("\r" + " " * (self._shown + 2) + "\r", nl=False, err=True)
             self._shown = 0
-
-    def _columns(self) -> int:
-        return shutil.get_terminal_size().columns
 
     def _forget_typed(self) -> None:
         if self.patient:

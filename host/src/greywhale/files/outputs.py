@@ -37,7 +37,10 @@ def require_files(*paths: Path | None) -> None:
             raise BadUsage(f"{path}: {there}{path.parent} {gone}, or write elsewhere.")
         if path.is_dir():
             raise BadUsage(f"{path}: this is a folder; name a file in it.")
-        _require_writable(path)
+        try:
+            require_writable(path)
+        except OSError as error:
+            raise BadUsage(f"{path}: cannot be written: {os_reason(error)}; write elsewhere.") from None
 
 
 def require_folder(folder: Path | None, what: str, *names: str) -> None:
@@ -59,10 +62,3 @@ def require_folder(folder: Path | None, what: str, *names: str) -> None:
         require_writable(above / "new")
     except OSError as error:
         raise BadUsage(f"{folder}: cannot be made: {os_reason(error)}; write elsewhere.") from None
-
-
-def _require_writable(path: Path) -> None:
-    try:
-        require_writable(path)
-    except OSError as error:
-        raise BadUsage(f"{path}: cannot be written: {os_reason(error)}; write elsewhere.") from None

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from greywhale.base.types import Floats
-from greywhale.optimise.box import Box, Source, latin_hypercube
+from greywhale.optimise.box import Box, latin_hypercube
 from greywhale.optimise.optimiser import PACK, Optimiser
 
 # Finite, because scipy evaluates a first pack of infinities a second time; far enough from the limit that sums stay
@@ -81,6 +81,7 @@ class DifferentialEvolution(Optimiser):
 
     name: ClassVar[str] = "de"
     smallest_pack: ClassVar[int] = 5
+    _scatter = staticmethod(latin_hypercube)
 
     def __init__(
         self,
@@ -126,6 +127,3 @@ class DifferentialEvolution(Optimiser):
         self._finalizer()
         if self._thread is not None:
             self._thread.join()
-
-    def _scatter(self, source: Source, count: int, dimensions: int) -> Floats:
-        return latin_hypercube(source, count, dimensions)

@@ -78,26 +78,9 @@ def _product(factors: Floats) -> Floats:
     return product
 
 
-def _sphere(z: Floats) -> Floats:
-    return _sum(z**2)
-
-
 def _elliptic(z: Floats) -> Floats:
     d = z.shape[1]
     return _sum(10.0 ** (6 * np.arange(d) / max(1, d - 1)) * z**2)
-
-
-def _schwefel12(z: Floats) -> Floats:
-    return _sum(np.cumsum(z, axis=1) ** 2)
-
-
-def _schwefel221(z: Floats) -> Floats:
-    largest: Floats = np.max(np.abs(z), axis=1)
-    return largest
-
-
-def _schwefel222(z: Floats) -> Floats:
-    return _sum(np.abs(z)) + _product(np.abs(z))
 
 
 def _schwefel226(z: Floats) -> Floats:
@@ -119,10 +102,6 @@ def _rosenbrock(z: Floats) -> Floats:
 def _zakharov(z: Floats) -> Floats:
     slope = _sum(0.5 * np.arange(1, z.shape[1] + 1) * z)
     return _sum(z**2) + slope**2 + slope**4
-
-
-def _rastrigin(z: Floats) -> Floats:
-    return _sum(z**2 + 10 * (1 - np.cos(2 * np.pi * z)))
 
 
 def _ackley(z: Floats) -> Floats:
@@ -149,14 +128,14 @@ def _levy(z: Floats) -> Floats:
 FUNCTIONS: dict[str, Function] = {
     function.name: function
     for function in (
-        Function("sphere", 100.0, 0.0, _sphere),
+        Function("sphere", 100.0, 0.0, lambda z: _sum(z**2)),
         Function("elliptic", 100.0, 0.0, _elliptic),
-        Function("schwefel12", 100.0, 0.0, _schwefel12),
-        Function("schwefel221", 100.0, 0.0, _schwefel221),
-        Function("schwefel222", 10.0, 0.0, _schwefel222),
+        Function("schwefel12", 100.0, 0.0, lambda z: _sum(np.cumsum(z, axis=1) ** 2)),
+        Function("schwefel221", 100.0, 0.0, lambda z: np.abs(z).max(axis=1)),
+        Function("schwefel222", 10.0, 0.0, lambda z: _sum(np.abs(z)) + _product(np.abs(z))),
         Function("rosenbrock", 30.0, 1.0, _rosenbrock),
         Function("zakharov", 10.0, 0.0, _zakharov),
-        Function("rastrigin", 5.12, 0.0, _rastrigin),
+        Function("rastrigin", 5.12, 0.0, lambda z: _sum(z**2 + 10 * (1 - np.cos(2 * np.pi * z)))),
         Function("ackley", 32.0, 0.0, _ackley),
         Function("griewank", 600.0, 0.0, _griewank),
         Function("levy", 10.0, 1.0, _levy),

@@ -46,6 +46,7 @@ class Optimiser(Closing):
 
     name: ClassVar[str]
     smallest_pack: ClassVar[int] = 1
+    _scatter = staticmethod(scatter)  # of the first pack
 
     def __init__(
         self, box: Box, budget: int, source: Source, *, pack: int = PACK, start: ArrayLike | None = None
@@ -144,9 +145,6 @@ class Optimiser(Closing):
         pack = self.box.from_unit(self._scatter(self._source, self.pack_size, self.box.dimensions))
         pack[: len(self._start)] = self._start
         return pack
-
-    def _scatter(self, source: Source, count: int, dimensions: int) -> Floats:
-        return scatter(source, count, dimensions)
 
     def _remember(self, candidates: Floats, costs: Floats) -> None:
         index = int(np.argmin(costs))

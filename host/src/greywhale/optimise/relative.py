@@ -37,6 +37,7 @@ class RelativeWolfWhale(Optimiser):
 
     name: ClassVar[str] = "gwo-woa-relative"
     smallest_pack: ClassVar[int] = LEADERS
+    _scatter = staticmethod(latin_hypercube)
 
     def __init__(
         self, box: Box, budget: int, source: Source, *, pack: int = PACK, start: ArrayLike | None = None
@@ -79,6 +80,3 @@ class RelativeWolfWhale(Optimiser):
         better = costs < self._costs
         self._pack = np.where(better[:, None], self._tried, self._pack)
         self._costs = np.where(better, costs, self._costs)
-
-    def _scatter(self, source: Source, count: int, dimensions: int) -> Floats:
-        return latin_hypercube(source, count, dimensions)

@@ -24,10 +24,6 @@ MOTOR_KEYS = (
 _USUAL_MOTOR = {"gear_ratio": 100.0, "stall_torque_nm": 1.5, "stall_current_a": 2.0, "no_load_rpm": 60.0}
 
 
-def _fine(value: Any) -> str:
-    return ""
-
-
 @dataclass(frozen=True)
 class Question:
     """A number, or one of `choices`. `table` and `key` are where an answers file has it: [[link]] length_mm."""
@@ -41,7 +37,7 @@ class Question:
     high: float = 0.0
     choices: Sequence[str] = ()
     free: bool = False  # any text will do
-    check: Callable[[Any], str] = _fine  # why a value cannot be, "" if it can; of a free text too
+    check: Callable[[Any], str] = lambda value: ""  # why a value cannot be, "" if it can; of a free text too
 
     @property
     def where(self) -> str:

@@ -51,16 +51,9 @@ class Results(Closing):
 def _identity(tasks: Sequence[Task], about: Mapping[str, Any]) -> dict[str, Any]:
     """What a study is: what its user says of it, the versions, and every task with its seed and arguments."""
     told = json.dumps([task.identity for task in tasks], separators=(",", ":"), allow_nan=False)
-    own = {"versions": versions(), "number of tasks": len(tasks), "list of tasks": _digest(told)}
+    digest = hashlib.sha256(told.encode()).hexdigest()[:16]
+    own = {"versions": versions(), "number of tasks": len(tasks), "list of tasks": digest}
     return {**encode(about), **own}
-
-
-def _digest(text: str) -> str:
-    return hashlib.sha256(text.encode()).hexdigest()[:16]
-
-
-def _is_result(value: dict[str, Any]) -> bool:
-    return isinstance(value.get("task"), str) and "result" in value
 
 
 KIND = Kind(
@@ -70,5 +63,5 @@ KIND = Kind(
     subject="study",
     anew="name another file",
     again="with the same file",
-    is_line=_is_result,
+    is_line=lambda value: isinstance(value.get("task"), str) and "result" in value,
 )

@@ -24,7 +24,7 @@ from greywhale.board.flash.bootloader import (
 from greywhale.board.flash.flasher import find_target
 from greywhale.board.flash.images import Image, check_image, packaged_image, read_image
 from greywhale.board.flash.platformio import find_sources, last_build
-from greywhale.board.flash.targets import BOARDS, FlashBoard
+from greywhale.board.flash.targets import BOARDS
 
 # Reads so many bytes from a word address on; None where the answer was wrong.
 _Reader = Callable[[Talk, int, int], bytes | None]
@@ -73,7 +73,8 @@ def compare_image(
     image = named or shipped_image(target.name)
     check_image(image, target.board, port)
     held = held_blocks(image)
-    memory = read_flash(port, found, [*held, *_boot_blocks(target.board)], report)
+    boot = [range(start, start + BLOCK) for start in range(target.board.space, target.board.flash, BLOCK)]
+    memory = read_flash(port, found, [*held, *boot], report)
     count = sum(map(len, held))
     return compare(image, held, memory[:count]), look_at_boot_code(found, memory[count:])
 
@@ -82,10 +83,6 @@ def held_blocks(image: Image) -> list[range]:
     """The addresses that the image has something for; what it leaves out is never executed."""
     blocks = [range(start, min(start + BLOCK, image.end)) for start in range(0, image.end, BLOCK)]
     return [block for block in blocks if image.memory[block.start : block.stop].strip(b"\xff")]
-
-
-def _boot_blocks(board: FlashBoard) -> list[range]:
-    return [range(start, start + BLOCK) for start in range(board.space, board.flash, BLOCK)]
 
 
 def compare(image: Image, held: Sequence[range], memory: bytes) -> Comparison:

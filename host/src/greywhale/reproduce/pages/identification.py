@@ -140,7 +140,10 @@ def _searched(estimates: Mapping[str, float]) -> list[dict[str, float]]:
 
 
 def _figure_6(found: Found) -> tuple[Any, ...]:
-    runs = {f"seed {seed}": run["identified"]["curve"] for seed, run in _by_seed(found)}
+    runs = {
+        f"seed {seed}": run["identified"]["curve"]
+        for seed, run in zip(found.request.every_seed, found.paper(), strict=True)
+    }
     picture = curves.convergence(runs, "Identification by the paper's method on data set 1")
     flat = [last_improvement(curve) for curve in runs.values()]
     return (
@@ -150,10 +153,6 @@ def _figure_6(found: Found) -> tuple[Any, ...]:
             f"{several(flat, '.0f')}. A curve that still falls near the end says that the budget ended the search."
         ),
     )
-
-
-def _by_seed(found: Found) -> list[tuple[int, Any]]:
-    return list(zip(found.request.every_seed, found.paper(), strict=True))
 
 
 def last_improvement(curve: Sequence[float]) -> int:

@@ -73,16 +73,13 @@ def steps(found: Found) -> tuple[Any, ...]:
         for length in LENGTHS_S
         if gain(found, reading, length) >= STEPS_LOWER
     ]
+    where = f"in: {'; '.join(reached)}" if reached else "in none of them"
     return table, words(
         f"So Table 10 changes the error on a step by {-max(gains):+.0f} to {-min(gains):+.0f} %, and how much it is "
         f"depends on what the paper leaves open. {STEPS_LOWER:g} % is within reach of a controller in "
         f"{len(possible)} of the 4 ways to read sets and change of error; Table 10 itself gains as much "
-        f"{_where(reached)}. The longer the record, the more an error at rest counts.",
+        f"{where}. The longer the record, the more an error at rest counts.",
     )
-
-
-def _where(reached: Sequence[str]) -> str:
-    return f"in: {'; '.join(reached)}" if reached else "in none of them"
 
 
 def _heading(rows: Sequence[Row], reading: Reading) -> list[Row]:

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import base64
 from pathlib import Path
-from typing import Any
 
 import jinja2
 
 from greywhale.base.formats.whole import write_text
-from greywhale.reproduce.pages.document import Block, Code, Document, Picture, Sheet
+from greywhale.reproduce.pages.document import Document, Picture
 from greywhale.reproduce.pages.numbers import keep_ranges
 
 
@@ -23,17 +22,11 @@ def write_html(document: Document, path: Path) -> Path:
         lstrip_blocks=True,
     )
     page = environment.get_template("report.html")
-    write_text(path, page.render(document=document, kind=_kind, url=_url, keep=keep_ranges))
+    write_text(
+        path, page.render(document=document, kind=lambda block: type(block).__name__, url=_url, keep=keep_ranges)
+    )
     return path
 
 
-def _kind(block: Block) -> str:
-    if isinstance(block, Sheet):
-        return "sheet"
-    if isinstance(block, Picture):
-        return "picture"
-    return "code" if isinstance(block, Code) else "words"
-
-
-def _url(picture: Any) -> str:
+def _url(picture: Picture) -> str:
     return "data:image/png;base64," + base64.b64encode(picture.png).decode("ascii")

@@ -87,6 +87,8 @@ def silent(seed: int) -> dict[str, list[float]]:
 
 def floors(seed: int) -> dict[str, Any]:
     """The least total error (rad² s, integrated) that any controller could reach, for each friction and motion."""
+    # The multi-step of `errata`, whose first level is where it begins.
+    staircase = multi_steps(list(errata.LEVELS), [errata.HOLD_S] * len(errata.LEVELS))
     found: dict[str, Any] = {}
     for friction, arm in ARMS.items():
         plant = plant_row(load_arm(arm)).copy()
@@ -94,14 +96,9 @@ def floors(seed: int) -> dict[str, Any]:
         found[friction] = {
             "steps": _integral(steps(STEP_RAD, 1.0, min(LENGTHS_S)), plant),
             "small step": _integral(steps(SMALL_STEP_RAD, 1.0, min(LENGTHS_S)), plant),
-            "multi-steps": _integral(_staircase(), plant),
+            "multi-steps": _integral(staircase, plant),
         }
     return found
-
-
-def _staircase() -> Trajectory:
-    """The multi-step of `errata`, whose first level is where it begins."""
-    return multi_steps(list(errata.LEVELS), [errata.HOLD_S] * len(errata.LEVELS))
 
 
 def _integral(motion: Trajectory, plant: Floats) -> float:
