@@ -22,8 +22,8 @@ COMMAND = click.Command("greywhale_sim", params=[*sim.command.params, *MORE], he
 def read(words: Sequence[str]) -> tuple[ServeOptions, bool]:
     """The options that these words name, and whether the answer is JSON."""
     given = COMMAND.make_context("python -m greywhale_sim", list(words)).params
-    as_json, faults = given.pop("as_json"), given.pop("mistake")
-    return ServeOptions(**given, faults=faults), as_json
+    as_json: bool = given.pop("as_json")
+    return ServeOptions(**given), as_json
 
 
 def lock_step(*words: str) -> LockStepBench:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import click
 
@@ -42,18 +43,12 @@ from greywhale.protocol.ports import choose_port
 @json_option("greywhale.commission.result:Answer")
 def command(
     out: Path,
-    arm_file: str | None,
-    model: Path | None,
     ranges: tuple[str, ...],
-    rounds: int,
-    trials: int,
-    budget: int | None,
-    seed: int,
     workers: int | None,
-    resume: bool,
     yes: bool,
     port: str | None,
     as_json: bool,
+    **options: Any,
 ) -> None:
     """Find controllers for the connected arm, and prove them on it.
 
@@ -76,31 +71,19 @@ def command(
     if len(chosen) < len(ranges):
         raise BadUsage("--range names a joint twice; give each joint once.")
     require_folder(out, "logs, models and controllers", "report.html")
-    options = CommissioningRequest(
-        port=choose_port(port),
-        out=out,
-        arm_file=arm_file,
-        model=model,
-        ranges=chosen,
-        rounds=rounds,
-        trials=trials,
-        seed=seed,
-        budget=budget,
-        threads=workers or 0,
-        resume=resume,
-    )
-    warn = prepare_motion(options.port, yes)
+    request = CommissioningRequest(choose_port(port), out, ranges=chosen, threads=workers or 0, **options)
+    warn = prepare_motion(request.port, yes)
     try:
         # Also while it computes: whoever stops it does not expect the arm to move again.
-        with Session.of(options.port):
+        with Session.of(request.port):
             warn()
             with progress() as report:
-                outcome = commission(options, report)
+                outcome = commission(request, report)
     except KeyboardInterrupt as interrupt:
         interrupt.add_note(
             f"The board keeps the controllers from before; the same command with --resume goes on in {out}."
         )
         raise
     page = save_page(outcome, out / "report.html")
-    answer: Answer = {"port": options.port, **outcome.as_dict(), "report": str(page)}
+    answer: Answer = {"port": request.port, **outcome.as_dict(), "report": str(page)}
     show(as_json, answer, f"{outcome.text()}\n\nWritten: {page}")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import click
 
@@ -22,7 +23,7 @@ from greywhale.files.outputs import require_folder
 @option("--board", type=click.Choice(["mega", "nano"]), default="mega", help="The simulated board.")
 @option("--arm", type=FILE, help="TOML with the arm; without it, the built-in one.")
 @option("--speed", type=click.Choice(["1", "max"]), default="max", help="Real time or faster.")
-@option("--duration", type=float, default=20.0, help="Seconds of generated motion.")
+@option("--duration", "duration_s", type=float, default=20.0, help="Seconds of generated motion.")
 @option("--seed", type=click.IntRange(0, MOST_SEED), default=1, help="Seed of the generated motion.")
 @option(
     "--controller",
@@ -30,7 +31,7 @@ from greywhale.files.outputs import require_folder
     shell_complete=completion.controllers,
     help="Show this controller.toml instead of identifying and tuning.",
 )
-@option("--practice", type=float, default=20.0, help="Seconds of motion to identify the arm from.")
+@option("--practice", "practice_s", type=float, default=20.0, help="Seconds of motion to identify the arm from.")
 @option(
     "--budget",
     type=click.IntRange(1, 1_000_000),
@@ -39,18 +40,7 @@ from greywhale.files.outputs import require_folder
 @option("--prove", is_flag=True, help="Also prove the tuned controllers on the arm, as `commission` does.")
 @json_option("greywhale.cli.story.result:Answer")
 def command(
-    out: Path,
-    leader: Path | None,
-    board: str,
-    arm: Path | None,
-    speed: str,
-    duration: float,
-    seed: int,
-    controller: Path | None,
-    practice: float,
-    budget: int | None,
-    prove: bool,
-    as_json: bool,
+    out: Path, leader: Path | None, arm: Path | None, controller: Path | None, as_json: bool, **options: Any
 ) -> None:
     """The whole story on the simulated bench in one go, pictures at the end.
 
@@ -64,21 +54,9 @@ def command(
     need_bench("greywhale_sim.serial_port")
     from greywhale.cli import story
 
-    options = story.DemoOptions(
-        out=out,
-        leader=leader,
-        board=board,
-        arm=arm,
-        speed=speed,
-        duration_s=duration,
-        seed=seed,
-        controller=controller,
-        practice_s=practice,
-        budget=budget,
-        prove=prove,
-    )
+    demo = story.DemoOptions(out=out, leader=leader, arm=arm, controller=controller, **options)
     with progress() as report:
-        result = story.run(options, report)
+        result = story.run(demo, report)
     show(as_json, result.as_dict(), result.text())
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import TypedDict
+from typing import Any, TypedDict
 
 import click
 
@@ -32,47 +32,28 @@ class Mistakes(TypedDict):
 @option("--firmware", type=FILE, help="HEX file to start with, as if flashed.")
 @option("--blank", is_flag=True, help="Start with nothing but the bootloader.")
 @option(
-    "--mistake", multiple=True, metavar="NAME", help="Wire it wrongly, NAME or NAME:PLACE; `--mistake list` names all."
+    "--mistake",
+    "faults",
+    multiple=True,
+    metavar="NAME",
+    help="Wire it wrongly, NAME or NAME:PLACE; `--mistake list` names all.",
 )
 @option("--by-hand", is_flag=True, help="Be the person: type `turn leader 0`, `hold 30`; `help` lists all.")
 @json_option(Port | Mistakes)
-def command(
-    board: str,
-    leader: Path | None,
-    arm: Path | None,
-    driver: str,
-    speed: str,
-    eeprom: Path | None,
-    firmware: Path | None,
-    blank: bool,
-    mistake: tuple[str, ...],
-    by_hand: bool,
-    as_json: bool,
-) -> None:
+def command(leader: Path | None, faults: tuple[str, ...], by_hand: bool, as_json: bool, **options: Any) -> None:
     """Start the simulated bench and print its serial port; Ctrl-C ends it.
 
     On stderr it says the name under which `greywhale ports` lists the port.
     """
     serve = need_bench("greywhale_sim.serve")
-    faults = need_bench("greywhale_sim.faults")
-    if "list" in mistake:
-        answer: Mistakes = {"mistakes": {one.name: one.says for one in faults.FAULTS}}
-        show(as_json, answer, faults.listed())
+    if "list" in faults:
+        known = need_bench("greywhale_sim.faults")
+        answer: Mistakes = {"mistakes": {one.name: one.says for one in known.FAULTS}}
+        show(as_json, answer, known.listed())
         return
     if leader is not None:
         warn(load_leader(leader).remarks)
-    options = serve.ServeOptions(
-        board=board,
-        leader=leader,
-        arm=arm,
-        driver=driver,
-        speed=speed,
-        eeprom=eeprom,
-        blank=blank,
-        firmware=firmware,
-        faults=mistake,
-        by_hand=by_hand,
-    )
+    bench = serve.ServeOptions(leader=leader, faults=faults, by_hand=by_hand, **options)
 
     def ready(port: str) -> None:
         answer: Port = {"port": port}
@@ -81,7 +62,7 @@ def command(
         if by_hand:
             tell("Your hands are words here, such as: turn leader 0, hold 30, hang. help lists all.")
 
-    serve.serve(options, on_ready=ready, note=lambda text: tell(f"greywhale: {text}"))
+    serve.serve(bench, on_ready=ready, note=lambda text: tell(f"greywhale: {text}"))
 
 
 def _hint(port: str) -> str:
