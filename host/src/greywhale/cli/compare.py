@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import cast
+from typing import Any, cast
 
 import click
 
@@ -39,7 +39,7 @@ class Answer(ComparisonFacts):
 )
 @option("--dimensions", type=int, default=10, help="Coordinates of every function.")
 @option("--budget", type=int, default=500, help="Evaluations of every run.")
-@option("--seeds", type=int, default=25, help="Runs of every method on every function.")
+@option("--seeds", "runs", type=int, default=25, help="Runs of every method on every function.")
 @option("--pack", type=int, help="Pack of every method; without it, each method's own.")
 @option("--seed", type=int, default=0, help="Where all random numbers start.")
 @workers_option("--jobs")
@@ -57,16 +57,12 @@ def command(
     functions: str | None,
     methods: str | None,
     settings: str,
-    dimensions: int,
-    budget: int,
-    seeds: int,
-    pack: int | None,
-    seed: int,
     workers: int | None,
     results: Path | None,
     out: tuple[Path, ...],
     overwrite: bool,
     as_json: bool,
+    **sizes: Any,
 ) -> None:
     """Compare optimisers on standard functions, plain and shifted, at equal budgets.
 
@@ -83,11 +79,7 @@ def command(
         functions=_names(functions, tuple(FUNCTIONS)),
         settings=cast(tuple[Setting, ...], _names(settings, ())),
         methods=_names(methods, tuple(METHODS)),
-        dimensions=dimensions,
-        budget=budget,
-        runs=seeds,
-        seed=seed,
-        pack=pack,
+        **sizes,
     )
     plan.check()
     if workers is None and plan.evaluations < SMALL:

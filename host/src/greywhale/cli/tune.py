@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import NotRequired, TypedDict
+from typing import Any, NotRequired, TypedDict
 
 import click
 
@@ -84,10 +84,6 @@ class Answer(TuningFacts, Layouts):
 def command(
     model_file: str,
     out: Path,
-    strategy: str,
-    method: str,
-    budget: int | None,
-    seed: int,
     workers: int | None,
     start: Path | None,
     bounds: tuple[str, ...],
@@ -101,6 +97,7 @@ def command(
     pictures: Path | None,
     overwrite: bool,
     as_json: bool,
+    **search: Any,
 ) -> None:
     """Tune the four controllers for a model of greywhale identify.
 
@@ -111,18 +108,15 @@ def command(
     limits = _bounds(bounds)
     if workers is not None:
         require_within("workers", workers, 1, MOST_WORKERS)
-    check_request(strategy=strategy, method=method, budget=budget, seed=seed, bounds=limits)
+    check_request(**search, bounds=limits)
     journal = out.parent / f"{out.name}.journal"
     _check_files(out, journal, resume, overwrite, pictures, [model_file, arm, params])
-    model = load_model(model_file, samples=samples, seed=seed, force=force, params=params, arm=arm)
+    model = load_model(model_file, samples=samples, seed=search["seed"], force=force, params=params, arm=arm)
     first = controller_row(controller_file.load(start)) if start is not None else None
     with progress() as report:
         outcome = tune(
             model,
-            strategy=strategy,
-            method=method,
-            budget=budget,
-            seed=seed,
+            **search,
             threads=workers or 0,
             start=first,
             bounds=limits,

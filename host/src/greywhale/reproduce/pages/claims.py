@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -39,21 +38,6 @@ RIVALS = ("gwo", "woa", "pso")
 OUTPUT_SETS = "265,113 cycles become 6,069 on the ATmega2560, 311 in the firmware (python -m tools.benchmarks fuzzy)"
 
 
-@dataclass(frozen=True)
-class Claim:
-    """What the paper says; what comes out on the default arm, on one like the paper's, and elsewhere; the verdict."""
-
-    says: str
-    default: str
-    sticky: str
-    elsewhere: str
-    verdict: str
-
-    @property
-    def row(self) -> Row:
-        return Row(self.says, (self.default, self.sticky, self.elsewhere, self.verdict))
-
-
 def chapter(found: Found) -> Chapter:
     """The claims, and the paragraph that explains most of them."""
     return Chapter(
@@ -76,14 +60,14 @@ def table(found: Found) -> Sheet:
         _tuning(found, "multi-steps", "Tuning lowers that on multi-steps by {:g} %", MULTI_STEPS_LOWER),
         _steady_state(found),
         _delay(found),
-        Claim("Output sets like singletons save time", OUTPUT_SETS, "", "the same output: Octave to 2e-15", YES),
+        Row("Output sets like singletons save time", (OUTPUT_SETS, "", "the same output: Octave to 2e-15", YES)),
         _convergence(found),
         _sets_alone(found),
         _superior(found),
     )
     return sheet(
         ("the paper says", "default arm", "arm like the paper's", "elsewhere", "verdict"),
-        [claim.row for claim in claims],
+        claims,
         notes=(
             f"Median (lowest to highest) of {found.seeds.split(' (')[0].removeprefix('median of ')}; negative: "
             f"worse. A figure is reached where a median is at least {NEAR:g} of the printed one. {YES}: on both "
@@ -114,7 +98,7 @@ def _percent(values: Sequence[float | None]) -> str:
     return f"{several(values, '.0f')} %"
 
 
-def _grey_box(found: Found, data_set: int, says: str, printed: float) -> Claim:
+def _grey_box(found: Found, data_set: int, says: str, printed: float) -> Row:
     cells, holds = {}, {}
     for arm in identified.arms_of(found):
         drawn, started = (identified.gains(found, method, arm, data_set) for method in ("paper", "paper-started"))
@@ -128,14 +112,19 @@ def _grey_box(found: Found, data_set: int, says: str, printed: float) -> Claim:
     verdict = _judge(found, holds[DEFAULT], holds[STICKY])
     if verdict in (YES, LIKE) and not holds[OTHER_HAND]:
         verdict += ", with one of two hands"
-    return Claim(says.format(printed), cells[DEFAULT], cells[STICKY], elsewhere, verdict)
+    return Row(says.format(printed), (cells[DEFAULT], cells[STICKY], elsewhere, verdict))
 
 
-def _method_and_table(values: Mapping[str, Sequence[float | None]]) -> str:
-    return f"method: {_percent(values[METHOD])}; {PRINTED}: {_percent(values[PRINTED])}"
+def _on_both_arms(
+    says: str, fell: Mapping[str, Mapping[str, Sequence[float | None]]], elsewhere: str, verdict: str
+) -> Row:
+    cells = [
+        f"method: {_percent(fell[arm][METHOD])}; {PRINTED}: {_percent(fell[arm][PRINTED])}" for arm in (DEFAULT, STICKY)
+    ]
+    return Row(says, (*cells, elsewhere, verdict))
 
 
-def _tuning(found: Found, motion: str, says: str, printed: float) -> Claim:
+def _tuning(found: Found, motion: str, says: str, printed: float) -> Row:
     fell = {arm: changes(found, motion, arm) for arm in (DEFAULT, STICKY)}
     holds = [_reached(printed, one[METHOD], one[PRINTED]) for one in fell.values()]
     gains = [
@@ -150,9 +139,7 @@ def _tuning(found: Found, motion: str, says: str, printed: float) -> Claim:
     verdict = _judge(found, *holds)
     if verdict == NO and reached:
         verdict = f"{NO}; the printed table in some readings"
-    return Claim(
-        says.format(printed), _method_and_table(fell[DEFAULT]), _method_and_table(fell[STICKY]), other, verdict
-    )
+    return _on_both_arms(says.format(printed), fell, other, verdict)
 
 
 def _compare(found: Found, arm: str, measure: str, joints: Sequence[int]) -> dict[str, list[float | None]]:
@@ -173,44 +160,47 @@ def _compare(found: Found, arm: str, measure: str, joints: Sequence[int]) -> dic
     return fell
 
 
-def _measured(found: Found, measure: str, joints: Sequence[int], says: str, printed: float) -> Claim:
+def _measured(found: Found, measure: str, joints: Sequence[int], says: str, printed: float, elsewhere: str = "") -> Row:
     fell = {arm: _compare(found, arm, measure, joints) for arm in (DEFAULT, STICKY)}
     holds = [
         _reached(printed, *([value for value in values if value is not None] or [-np.inf] for values in one.values()))
         for one in fell.values()
     ]
     verdict = _judge(found, *holds)
-    return Claim(says.format(printed), _method_and_table(fell[DEFAULT]), _method_and_table(fell[STICKY]), "", verdict)
+    return _on_both_arms(says.format(printed), fell, elsewhere, verdict)
 
 
-def _steady_state(found: Found) -> Claim:
-    claim = _measured(found, "steady", (1,), "Joint 1's steady-state error falls by {:g} %", STEADY_STATE_LOWER)
+def _steady_state(found: Found) -> Row:
     others = [_percent(_compare(found, STICKY, "steady", (joint,))[PRINTED]) for joint in (0, 2, 3)]
-    return replace(claim, elsewhere=f"{PRINTED} on the arm like the paper's, joints 0, 2 and 3: {', '.join(others)}")
+    elsewhere = f"{PRINTED} on the arm like the paper's, joints 0, 2 and 3: {', '.join(others)}"
+    says = "Joint 1's steady-state error falls by {:g} %"
+    return _measured(found, "steady", (1,), says, STEADY_STATE_LOWER, elsewhere)
 
 
-def _delay(found: Found) -> Claim:
+def _delay(found: Found) -> Row:
     printed = lower(*(sum(side) for side in PAPER_DELAY))
     return _measured(found, "onset", range(4), "Delays from onset to onset fall, in sum by {:.0f} %", printed)
 
 
-def _convergence(found: Found) -> Claim:
+def _convergence(found: Found) -> Row:
     flat = [last_improvement(run["identified"]["curve"]) for run in found.paper()]
     sticky = [last_improvement(run["identified"]["curve"]) for run in found.paper(STICKY)]
     joints = [[last_improvement_of_joint(run["curves"][joint]) for run in found.grey_box("mf")] for joint in range(4)]
     inside = [min(found_) <= said <= max(found_) for found_, said in zip(joints, FIG_19_FLAT, strict=True)]
     holds = [min(one) <= FIG_6_FLAT <= max(one) and all(inside) for one in (flat, sticky)]
-    return Claim(
+    return Row(
         f"Searches are flat from iteration {FIG_6_FLAT} of 50 (identification) and "
         f"{', '.join(map(str, FIG_19_FLAT))} of 30 (joints)",
-        several(flat, ".0f"),
-        several(sticky, ".0f"),
-        f"joints: {', '.join(several(one, '.0f') for one in joints)}",
-        _judge(found, *holds),
+        (
+            several(flat, ".0f"),
+            several(sticky, ".0f"),
+            f"joints: {', '.join(several(one, '.0f') for one in joints)}",
+            _judge(found, *holds),
+        ),
     )
 
 
-def _sets_alone(found: Found) -> Claim:
+def _sets_alone(found: Found) -> Row:
     fell = {
         kind: {
             strategy: [
@@ -227,16 +217,11 @@ def _sets_alone(found: Found) -> Claim:
         middle = {strategy: float(np.median(values)) for strategy, values in gains.items()}
         holds[kind] = middle["mf"] > max(middle["sf"], middle["both"])
         cells[kind] = "; ".join(f"{name}: {_percent(gains[key])}" for key, name in SEARCHED.items())
-    return Claim(
-        "Tuning the sets alone is best in simulation (multi-steps)",
-        "",
-        f"with friction, {cells['sticky']}",
-        f"the grey box as printed, {cells['motions']}",
-        _judge(found, *holds.values()),
-    )
+    said = f"with friction, {cells['sticky']}", f"the grey box as printed, {cells['motions']}"
+    return Row("Tuning the sets alone is best in simulation (multi-steps)", ("", *said, _judge(found, *holds.values())))
 
 
-def _superior(found: Found) -> Claim:
+def _superior(found: Found) -> Row:
     names = {"identify": "identification", "sets": "tuning"}
     problems = {said: _of_rivals(costs_of(found, name)) for name, said in names.items()}
     duels = against_each(problems, "gwo-woa")
@@ -244,13 +229,9 @@ def _superior(found: Found) -> Claim:
     tally = [one.word for duel in against_each(shifted, "gwo-woa").values() for one in duel.values()]
     holds = all(one.word == "lower" for duel in duels.values() for one in duel.values())
     counted = ", ".join(f"{word} {tally.count(word)}" for word in ("lower", "higher", "not told apart"))
-    return Claim(
-        "GWO-WOA is superior to GWO, WOA and PSO",
-        _duel("identification", duels["identification"]),
-        _duel("tuning", duels["tuning"]),
-        f"its costs on shifted functions: {counted}, of {len(tally)} pairs (Mann-Whitney, Holm)",
-        _judge(found, holds, holds),
-    )
+    told = [_duel(problem, duel) for problem, duel in duels.items()]
+    elsewhere = f"its costs on shifted functions: {counted}, of {len(tally)} pairs (Mann-Whitney, Holm)"
+    return Row("GWO-WOA is superior to GWO, WOA and PSO", (*told, elsewhere, _judge(found, holds, holds)))
 
 
 def _of_rivals(costs: Mapping[str, Sequence[float]]) -> dict[str, Sequence[float]]:
