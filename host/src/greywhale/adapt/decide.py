@@ -58,8 +58,6 @@ BELIEVED = 0.7
 
 
 class Outcome(Enum):
-    """How a trial ended."""
-
     KEPT = "kept"
     WORSE = "worse"
     RESTLESS = "restless"

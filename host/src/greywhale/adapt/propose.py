@@ -93,7 +93,6 @@ def propose(task: Task) -> Proposal:
 
 
 def work_on(task: Task) -> Proposal | LiveModel:
-    """What a task asks for."""
     return propose(task) if task.budget else _fit(task)
 
 

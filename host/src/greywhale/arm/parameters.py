@@ -65,8 +65,6 @@ def _printed_value(key: str, value: float) -> str:
 
 
 class Link(Table):
-    """One rigid link."""
-
     mass: Mass  # kg
     length: Length  # m
     centre: Annotated[float, Field(ge=0, le=100)]  # m, centre of mass from the nearer joint
@@ -179,8 +177,6 @@ class Joint(Table):
 
 
 class Drive(Table):
-    """The motor drivers."""
-
     supply: Annotated[float, Field(gt=0, le=60)]  # V, without load
     supply_resistance: Annotated[float, Field(ge=0, le=10)] = 0.0  # ohm, of battery and cables, for all motors together
     resistance: Annotated[float, Field(ge=0, le=10)] = 0.0  # ohm, of one driver, in line with its motor's
@@ -236,7 +232,6 @@ class ArmParameters(Table):
 
     @property
     def joints_in_use(self) -> Joints:
-        """The joints that are not fixed."""
         return tuple(number for number, joint in enumerate(self.joint) if not joint.fixed)
 
     def actuator(self, joint: int) -> _native.Actuator:

@@ -124,7 +124,6 @@ class Leading:
 
     @property
     def points(self) -> int:
-        """How many points were made so far."""
         return len(self._points)
 
     @property

@@ -110,7 +110,6 @@ class Person:
                 self.go_back()
 
     def go_back(self) -> None:
-        """Forget the last answer."""
         del self._given[-1:]
         self._shown = ""
 

@@ -29,7 +29,6 @@ def ports(context: Context, parameter: Parameter, incomplete: str) -> Items:
 
 
 def arms(context: Context, parameter: Parameter, incomplete: str) -> Items:
-    """Arms by their names, and files."""
     from greywhale.files.arm import arm_names
 
     named = [CompletionItem(name) for name in arm_names() if name.startswith(incomplete)]
@@ -37,7 +36,6 @@ def arms(context: Context, parameter: Parameter, incomplete: str) -> Items:
 
 
 def controllers(context: Context, parameter: Parameter, incomplete: str) -> Items:
-    """Controllers by their names, and files."""
     from greywhale.files.paper_tables import controller_names
 
     named = [CompletionItem(name) for name in controller_names() if name.startswith(incomplete)]

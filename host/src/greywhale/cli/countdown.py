@@ -38,7 +38,6 @@ def prepare_motion(port: str, yes: bool) -> Callable[[], None]:
 
 
 def count_down(wait: Callable[[float], None] = time.sleep) -> None:
-    """Count the seconds on stderr."""
     try:
         for left in range(SECONDS, 0, -1):
             click.echo(f"\rThe arm moves by itself in {left} s; Ctrl-C keeps it still. ", nl=False, err=True)

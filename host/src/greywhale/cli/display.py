@@ -30,8 +30,6 @@ Clock = Callable[[], float]
 
 @dataclass
 class Step:
-    """What is being done, and how far it is."""
-
     what: str
     begun_s: float
     done_before: float  # share that was done at the beginning: it tells nothing about the speed

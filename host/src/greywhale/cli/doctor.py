@@ -63,7 +63,6 @@ def command(
 
 
 def _line(one: Finding) -> str:
-    """What was found, the remedy below."""
     head = f"{one.verdict.value:<5} {one.check:<14} "
     remedy = f"\n{'':<{INDENT}}-> {one.remedy}" if one.remedy else ""
     return f"{head}{one.says}{remedy}"

@@ -216,7 +216,6 @@ def _refuse_without_excite(**given: object) -> None:
 
 
 def describe(recording: Recording) -> str:
-    """Describe a recording in a sentence."""
     lost = f", {recording.dropped} dropped by the link" if recording.dropped else ""
     waits = slow = ""
     if isinstance(recording, LedRecording):

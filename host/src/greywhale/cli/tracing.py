@@ -81,7 +81,6 @@ def is_on_stderr() -> bool:
 
 
 def end() -> None:
-    """Stop listening, and close the file."""
     for handler in list(ROOT.handlers):
         ROOT.removeHandler(handler)
         with contextlib.suppress(OSError):  # a full disk

@@ -119,7 +119,6 @@ class Job:
             self._process.stdin.flush()
 
     def join(self) -> None:
-        """Wait for its end."""
         self._thread.join()
 
     def _wake(self, urgent: bool = True) -> None:

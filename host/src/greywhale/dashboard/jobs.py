@@ -97,7 +97,6 @@ class Jobs:
         return job.facts
 
     def say(self, id: str, line: object) -> Facts:
-        """Answer a verb that asks."""
         job = self._find(id)
         if not isinstance(line, str) or len(line) > 200:
             raise BadUsage("line must be a short text.")

@@ -214,7 +214,6 @@ class Relay:
                 self.on_let_go(client.id)
 
     def drives(self, page: str) -> bool:
-        """Whether the page with this id drives."""
         with self._lock:
             return self._driver is not None and self._driver.id == page
 
@@ -224,7 +223,6 @@ class Relay:
             client.seen_s = self._board.line.clock()
 
     def receive(self, client: Client, data: bytes) -> None:
-        """Take frames from a client."""
         with self._lock:
             self.seen(client)
             for frame in client.decoder.feed(data):

@@ -32,7 +32,6 @@ PAGE_ID = "page id"  # among what is asked: which page asks, by the name that it
 
 
 def require_page(page: Path = PAGE) -> Path:
-    """The folder with the page's files."""
     if not (page / "index.html").is_file():
         raise UserError(f"{page}: the page is not built; run `make setup` in a checkout, or install greywhale again.")
     return page

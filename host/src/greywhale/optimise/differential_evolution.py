@@ -123,7 +123,6 @@ class DifferentialEvolution(Optimiser):
         self._channel.answer(np.where(np.isfinite(costs), costs, WORST))
 
     def close(self) -> None:
-        """End scipy's thread."""
         self._finalizer()
         if self._thread is not None:
             self._thread.join()

@@ -82,7 +82,6 @@ def leave(figure: Figure, left: float, right: float, bottom: float, top: float, 
 
 
 def headline(figure: Figure, text: str) -> None:
-    """A title close to the upper edge."""
     figure.suptitle(text, y=1.0 - 0.06 / figure.get_size_inches()[1], va="top")
 
 

@@ -34,13 +34,11 @@ _SETS = {"e": ("NE", "ZE", "PE"), "ce": ("NCE", "ZCE", "PCE"), "u": ("NU", "ZU",
 def responses(
     traces: Sequence[Trace], against: Trace, title: str, error: str, *, window: tuple[float, float] | None = None
 ) -> bytes:
-    """What `plot_responses` draws."""
     with style():
         return png(plot_responses(traces, against, title, error, window=window))
 
 
 def convergence(curves: Mapping[str, Sequence[float]], title: str) -> bytes:
-    """What `plot_convergence` draws."""
     with style():
         return png(plot_convergence(curves, title, looks.PAPERS_METHOD))
 
@@ -170,6 +168,5 @@ def surfaces(outputs: Mapping[str, Floats]) -> bytes:
 
 
 def ranks(places: Mapping[str, Mapping[str, float]], title: str) -> bytes:
-    """What `plot_ranks` draws."""
     with style():
         return png(plot_ranks(places, title))

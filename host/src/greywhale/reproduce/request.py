@@ -52,7 +52,6 @@ class Request:
 
     @property
     def drawn(self) -> tuple[str, ...]:
-        """The arms that were drawn."""
         return tuple(f"drawn {number + 1}" for number in range(QUICK_DRAWN_ARMS if self.quick else DRAWN_ARMS))
 
     @property

@@ -20,12 +20,10 @@ class Kind(Enum):
 
     @property
     def words(self) -> str:
-        """Its name in a sentence."""
         return self.value[0]
 
     @property
     def taker(self) -> str:
-        """The command that takes it."""
         return self.value[1]
 
 

@@ -48,7 +48,6 @@ class Table(BaseModel):
 
 
 def load(path: str | Path, model: type[Model]) -> Model:
-    """Read `path` and check it against `model`."""
     return check(read(path), model, str(path))
 
 
@@ -70,7 +69,6 @@ def read(path: str | Path) -> dict[str, Any]:
 
 
 def check(data: dict[str, Any], model: type[Model], name: str) -> Model:
-    """Check parsed TOML against `model`."""
     _refuse_odd_numbers(data, name)
     try:
         # Through JSON, so that in strict mode arrays may still become tuples, and words may become enumerations.

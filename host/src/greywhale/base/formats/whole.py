@@ -51,7 +51,6 @@ def write_whole(path: str | Path, write: Callable[[IO[bytes]], object]) -> None:
 
 
 def write_text(path: str | Path, text: str) -> None:
-    """Write `text` as UTF-8."""
     write_whole(path, lambda file: file.write(text.encode("utf-8")))
 
 

@@ -49,8 +49,6 @@ class Given:
 
 
 class SerialWorkers:
-    """This process does one task after another."""
-
     at_once = 1
 
     @contextlib.contextmanager

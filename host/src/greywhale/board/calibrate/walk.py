@@ -52,7 +52,6 @@ class Walk:
 
     @property
     def length(self) -> int:
-        """The number of steps."""
         return len(self._pots) + len(self._asked)
 
     def _next(self, at: int, answer: Answer) -> int:

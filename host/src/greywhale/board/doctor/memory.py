@@ -34,7 +34,6 @@ def refused() -> Finding:
 
 
 def unread(why: str) -> Finding:
-    """It could not be read back."""
     return Finding(_IMAGE, Verdict.BAD, f"Not compared: {why}", "Try again; if it stays so, `greywhale flash`.")
 
 

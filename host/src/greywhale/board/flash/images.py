@@ -51,7 +51,6 @@ def packaged_image(board: str) -> Path | None:
 
 
 def read_image(path: Path) -> Image:
-    """Read a HEX file."""
     memory = bytearray()
     for address, data in read_pieces(path):
         end = address + len(data)

@@ -115,7 +115,6 @@ class _Stage:
         return Run(name, recorded, evaluate(recorded.log()))
 
     def learn(self) -> learn.Learnt:
-        """Record practice, identify, tune."""
         options = self._options
         nominal = load_arm("white_box") if options.arm is None else learn.arm_as_drawn(self._arm)
         logs = practise(self._bench, nominal, self._base, options.out, options.practice_s, self._report)

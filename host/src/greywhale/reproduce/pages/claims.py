@@ -50,7 +50,6 @@ def chapter(found: Found) -> Chapter:
 
 
 def table(found: Found) -> Sheet:
-    """Every claim, a row each."""
     claims = (
         _grey_box(
             found, 0, f"The grey box is {GREY_BOX_BETTER_FITTED:g} % better than the white box", GREY_BOX_BETTER_FITTED
@@ -78,7 +77,6 @@ def table(found: Found) -> Sheet:
 
 
 def judge(default: bool, sticky: bool, seeds: int) -> str:
-    """The verdict in words."""
     if seeds < FEWEST:
         return f"open: {seeds} of {FEWEST} seeds"
     return YES if default and sticky else LIKE if sticky else "on the default arm" if default else NO

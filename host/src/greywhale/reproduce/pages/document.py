@@ -152,10 +152,8 @@ class Document:
 
 
 def words(*paragraphs: str) -> Words:
-    """Paragraphs."""
     return Words(paragraphs)
 
 
 def sheet(columns: Sequence[str], rows: Sequence[Row], printed: Sequence[int] = (), notes: Sequence[str] = ()) -> Sheet:
-    """A table."""
     return Sheet(tuple(columns), tuple(rows), frozenset(printed), tuple(notes))

@@ -139,7 +139,6 @@ def _table_11(found: Found) -> tuple[Any, ...]:
 
 
 def _sticky(found: Found) -> tuple[Any, ...]:
-    """Tables 11 and 12 on an arm like the paper's."""
     columns = columns_of(found, STICKY)
     rows = [*_rows_11(columns), Row("Mean squared error of the multi-steps (rad²)")]
     rows += _mse_rows(columns, "multi-steps", PAPER_MULTI_STEP_MSE)

@@ -23,7 +23,6 @@ ROUNDED_RAD = 1e-6
 
 
 def chapter(found: Found) -> Chapter:
-    """The reasons for what did and did not come out."""
     return Chapter(
         "Why",
         (

@@ -59,7 +59,6 @@ class Found:
         return {name: self[f"functions {name}"]["costs"] for name in optimisers.functions()}
 
     def errata(self) -> dict[str, Any]:
-        """What each erratum does."""
         return {name: self[f"errata {name}"] for name in errata.cases()}
 
     def objective(self) -> list[Any]:

@@ -35,7 +35,6 @@ def gains(found: Found, method: str, arm: str, data_set: int) -> list[float]:
 
 
 def table(found: Found) -> Sheet:
-    """Each arm with each reading."""
     rows = []
     for arm, said in arms_of(found).items():
         white = found.identified(IDENTIFICATIONS[0], arm)[0]["white_box"]

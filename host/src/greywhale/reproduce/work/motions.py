@@ -73,7 +73,6 @@ def judged(
 
 
 def evaluation(time_s: Floats, leader: Floats, follower: Floats) -> Evaluation:
-    """The paper's measures of a simulated motion."""
     state = np.full(len(time_s), "following")
     return evaluate(Log("simulation", Origin(), time_s, leader, follower, np.zeros_like(leader), state, 0, True))
 
@@ -90,7 +89,6 @@ def measures(one: Evaluation) -> dict[str, Any]:
 
 
 def shown(time_s: Floats, leader: Floats, every: int) -> dict[str, Any]:
-    """The time and the leader of a picture."""
     return {"time": rounded(time_s[::every]), "leader": rounded(leader[::every])}
 
 

@@ -73,5 +73,4 @@ def compare_on(seed: int, function: str, runs: int) -> dict[str, Any]:
 
 
 def functions() -> tuple[str, ...]:
-    """The standard functions."""
     return cast(tuple[str, ...], tuple(FUNCTIONS))
