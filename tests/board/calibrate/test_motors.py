@@ -11,7 +11,8 @@ import pytest
 
 from greywhale.arm import ArmParameters
 from greywhale.base.errors import UserError
-from greywhale.board.calibrate.motors import Pulse, examine_motor
+from greywhale.base.types import Floats
+from greywhale.board.calibrate.motors import examine_motor
 from greywhale.board.device import Device
 from greywhale.board.upload import read_parameters
 from greywhale.files.arm import default_arm
@@ -49,10 +50,10 @@ def test_a_joint_that_falls_in_one_pulse_is_not_taken_for_one_that_the_motor_mov
     """Whichever of the first pulses it is: neither swapped motors nor a direction follow from that."""
     table, pulses = ParameterTable.defaults(), iter(range(1000))
 
-    def scripted(device: object, weak: ParameterTable, joint: int, way: int) -> Pulse:
+    def scripted(device: object, weak: ParameterTable, joint: int, way: int) -> Floats:
         moved = np.array([0.05 * way * (weak.each("joint", "ku_mv")[0] > 3000), 0.0, 0.0, 0.0])
         moved[1] = -0.1 if next(pulses) == falling else 0.0
-        return Pulse(moved, 0.0)
+        return moved
 
     monkeypatch.setattr("greywhale.board.calibrate.motors.pulse", scripted)
     device: Any = SimpleNamespace(port="port")

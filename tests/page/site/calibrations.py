@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 from greywhale.base.errors import UserError
-from greywhale.board.calibrate.motors import Motor, Pulse, examine_motor, pulse_table, remarks
+from greywhale.base.types import Floats
+from greywhale.board.calibrate.motors import Motor, examine_motor, pulse_table, remarks
 from greywhale.board.calibrate.solve import Pose, solve
 from greywhale.board.calibrate.sweep import Sweep, judge_sweep
 from greywhale.protocol.table import ParameterTable
@@ -78,13 +79,13 @@ class Wired:
     falls: tuple[int, ...] = ()
     pulses: list[dict[str, Any]] = field(default_factory=list)
 
-    def pulse(self, device: object, weak: ParameterTable, joint: int, way: int) -> Pulse:
+    def pulse(self, device: object, weak: ParameterTable, joint: int, way: int) -> Floats:
         volts = weak[f"joint{joint}.ku_mv"] / 1000.0
         moved = np.zeros(4)
         moved[self.moves] = self.gain * way * volts * (volts > self.least_v)
         moved[1] -= 0.1 * (len(self.pulses) in self.falls)
         self.pulses.append({"way": way, "moved": moved.tolist()})
-        return Pulse(moved, volts)
+        return moved
 
 
 def tried_motors(patch: pytest.MonkeyPatch) -> dict[str, Any]:

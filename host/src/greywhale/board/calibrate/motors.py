@@ -36,14 +36,6 @@ _STIFF = 64.0
 
 
 @dataclass(frozen=True)
-class Pulse:
-    """What a pulse did: the way of each joint (4,) rad, and the most that the firmware put on the motor (V)."""
-
-    moved: Floats
-    most_v: float
-
-
-@dataclass(frozen=True)
 class Motor:
     """A motor that turned: `sign` 1 as its parameter says, -1 the other way, and the voltage that did it.
 
@@ -112,7 +104,7 @@ def _answer(device: Device, weak: ParameterTable, joint: int) -> Floats:
 
 def _between(device: Device, weak: ParameterTable, joint: int, way: int) -> Floats:
     one, other = pulse(device, weak, joint, way), pulse(device, weak, joint, -way)
-    return (one.moved - other.moved) / 2.0
+    return (one - other) / 2.0
 
 
 def remarks(motors: Sequence[Motor], supply_v: float) -> tuple[str, ...]:
@@ -158,8 +150,8 @@ def pulse_table(table: ParameterTable, joint: int, volts: float) -> ParameterTab
     return table.with_raw(changes)
 
 
-def pulse(device: Device, weak: ParameterTable, joint: int, way: int) -> Pulse:
-    """One pulse, `way` 1 or -1, with the set of `pulse_table`; the motors are off afterwards."""
+def pulse(device: Device, weak: ParameterTable, joint: int, way: int) -> Floats:
+    """The way (4,) rad of a pulse, `way` 1 or -1, with the set of `pulse_table`; the motors are off afterwards."""
     run_set(device, weak)
     _wait_until_still(device)
     step = [0, 0, 0, 0]
@@ -181,8 +173,8 @@ def pulse(device: Device, weak: ParameterTable, joint: int, way: int) -> Pulse:
     angles = np.array([one.follower for one in samples], dtype=np.float64) * ANGLE_LSB
     away = angles - np.array(begun.reference) * ANGLE_LSB
     most = np.argmax(np.abs(away), axis=0)
-    volts = max(abs(one.voltage[joint]) for one in samples) / 1000.0
-    return Pulse(away[most, np.arange(JOINTS)], volts)
+    moved: Floats = away[most, np.arange(JOINTS)]
+    return moved
 
 
 def _wait_until_still(device: Device) -> None:

@@ -5,7 +5,6 @@ Success so means that the new firmware runs.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
 
 from greywhale.base.errors import BadUsage, UserError
@@ -21,15 +20,6 @@ from greywhale.board.session import Session
 from greywhale.protocol import schema
 from greywhale.protocol.ports import board_of
 from greywhale.protocol.transport import open_line
-
-
-@dataclass(frozen=True)
-class Target:
-    """The board on a port, and the speed of its bootloader."""
-
-    name: str
-    board: FlashBoard
-    baud: int
 
 
 def flash(
@@ -53,13 +43,13 @@ def flash(
         # avrdude waits for ever for a port that is not there, and breaks into one that is in use.
         open_line(port).close()
         report("looking for the bootloader", 0.0)
-        target, found = find_target(port, expected)
+        name, found = find_board(port, expected)
         if sources is not None:
-            _build_and_upload(port, target, found, sources, report)
+            _build_and_upload(port, BOARDS[name], found, sources, report)
         else:
-            _upload(port, target, found, image or _packaged(target.name), report)
+            _upload(port, BOARDS[name], found, image or _packaged(name), report)
         report("greeting the firmware", 0.0)
-        return _greet(port, target)
+        return _greet(port, name)
 
 
 def _expected_board(port: str, named: str | None) -> str | None:
@@ -75,8 +65,8 @@ def _expected_board(port: str, named: str | None) -> str | None:
     return named or told
 
 
-def find_target(port: str, expected: str | None) -> tuple[Target, Bootloader]:
-    """The board whose bootloader answers, and that; it must be the expected one."""
+def find_board(port: str, expected: str | None) -> tuple[str, Bootloader]:
+    """The name of the board whose bootloader answers, and that; it must be the expected one."""
     names = [expected] if expected is not None else list(BOARDS)
     likely = [dialect for name in names for dialect in _dialects(BOARDS[name])]
     others = [dialect for board in BOARDS.values() for dialect in _dialects(board) if dialect not in likely]
@@ -87,7 +77,7 @@ def find_target(port: str, expected: str | None) -> tuple[Target, Bootloader]:
             f"{port}: the bootloader of an {BOARDS[name].title} answers, not that of an {BOARDS[expected].title}; "
             f"choose --board {name}, or another port."
         )
-    return Target(name, BOARDS[name], found.dialect.baud), found
+    return name, found
 
 
 def _dialects(board: FlashBoard) -> list[Dialect]:
@@ -106,20 +96,20 @@ def _name_of(port: str, found: Bootloader) -> str:
     raise UserError(f"{port}: the chip has signature {found.signature.hex()}; greywhale runs on {known} only.")
 
 
-def _build_and_upload(port: str, target: Target, found: Bootloader, sources: Path, report: Progress) -> None:
+def _build_and_upload(port: str, board: FlashBoard, found: Bootloader, sources: Path, report: Progress) -> None:
     # Built first and on its own: nothing is erased before there is something to write.
-    built = platformio.build(sources, target.board, report)
-    if len(target.board.bauds) == 1:
+    built = platformio.build(sources, board, report)
+    if len(board.bauds) == 1:
         erase_late_pages(port, found, read_image(built), report)
-        platformio.upload(sources, target.board, port, report)
+        platformio.upload(sources, board, port, report)
     else:  # PlatformIO knows one speed a board
-        upload_image(port, target.board, target.baud, built, report)
+        upload_image(port, board, found.dialect.baud, built, report)
 
 
-def _upload(port: str, target: Target, found: Bootloader, image: Image, report: Progress) -> None:
-    check_image(image, target.board, port)
+def _upload(port: str, board: FlashBoard, found: Bootloader, image: Image, report: Progress) -> None:
+    check_image(image, board, port)
     erase_late_pages(port, found, image, report)
-    upload_image(port, target.board, target.baud, image.path, report)
+    upload_image(port, board, found.dialect.baud, image.path, report)
 
 
 def _packaged(name: str) -> Image:
@@ -132,12 +122,12 @@ def _packaged(name: str) -> Image:
     return read_image(path)
 
 
-def _greet(port: str, target: Target) -> schema.HelloReply:
+def _greet(port: str, name: str) -> schema.HelloReply:
     with Device(port) as device:
         hello = device.hello
-    if hello.board is not target.board.identity:
+    if hello.board is not BOARDS[name].identity:
         raise UserError(
-            f"{port}: flashed for {target.name}, but the firmware says it was built for {hello.board.description}; "
+            f"{port}: flashed for {name}, but the firmware says it was built for {hello.board.description}; "
             "give a HEX file that was built for this board."
         )
     return hello

@@ -21,7 +21,7 @@ from greywhale.board.flash.bootloader import (
     version_1_answer,
     version_2_answer,
 )
-from greywhale.board.flash.flasher import find_target
+from greywhale.board.flash.flasher import find_board
 from greywhale.board.flash.images import Image, check_image, packaged_image, read_image
 from greywhale.board.flash.platformio import find_sources, last_build
 from greywhale.board.flash.targets import BOARDS
@@ -69,11 +69,12 @@ def compare_image(
     """Read back what the board holds and compare it with `hex_file`, or with the shipped image of that board; and look
     at its bootloader."""
     named = None if hex_file is None else read_image(hex_file)
-    target, found = find_target(port, None)
-    image = named or shipped_image(target.name)
-    check_image(image, target.board, port)
+    name, found = find_board(port, None)
+    board = BOARDS[name]
+    image = named or shipped_image(name)
+    check_image(image, board, port)
     held = held_blocks(image)
-    boot = [range(start, start + BLOCK) for start in range(target.board.space, target.board.flash, BLOCK)]
+    boot = [range(start, start + BLOCK) for start in range(board.space, board.flash, BLOCK)]
     memory = read_flash(port, found, [*held, *boot], report)
     count = sum(map(len, held))
     return compare(image, held, memory[:count]), look_at_boot_code(found, memory[count:])
