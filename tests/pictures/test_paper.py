@@ -14,8 +14,8 @@ from greywhale.motion import multi_steps
 from greywhale.pictures import looks
 from greywhale.pictures import paper_curves as curves
 from greywhale.pictures import paper_diagrams as diagrams
-from greywhale.pictures.identification import LARGEST_ERROR, Trace, plot_responses
-from greywhale.pictures.page import style
+from greywhale.pictures.identification import Trace, plot_responses
+from greywhale.pictures.page import LARGEST_ERROR, style
 from greywhale.reproduce.pages.optimisers import SAID
 from greywhale.reproduce.work.errata import surface
 from greywhale.reproduce.work.motions import printed

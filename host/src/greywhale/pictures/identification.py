@@ -12,19 +12,16 @@ from greywhale.base.types import Floats
 from greywhale.pictures.looks import DARK, GREY, Look
 from greywhale.pictures.page import (
     JOINTS,
+    LARGEST_ERROR,
     WIDE,
     headline,
+    label_responses,
     leave,
-    legend_below,
     make_logarithmic,
     mark_beyond,
-    mark_of_beyond,
 )
 from greywhale.pictures.plotting import Figure, Line2D, plt
 from greywhale.protocol.joints import ALL, Joints
-
-# Jumps would hide the error that is left after them (rad).
-LARGEST_ERROR = 0.2
 
 
 @dataclass(frozen=True)
@@ -58,7 +55,8 @@ def plot_responses(
     first, last = window or (min(np.min(one.time) for one in traces), max(np.max(one.time) for one in traces))
     off = {joint: [_off(one, against, joint, first, last) for one in behind] for joint in joints}
     largest = max(float(np.abs(one[1]).max(initial=0.0)) for errors in off.values() for one in errors)
-    below = _label_responses(figure, traces, error, largest)
+    lines = {one.name: Line2D([], [], **one.look.line) for one in traces}
+    below = label_responses(figure, {**lines, f"error: {error}": Line2D([], [], linestyle="none")}, largest)
     room = leave(figure, 0.67, 0.12, 0.46 + below, 0.75 if said else 0.48)
     grid = figure.add_gridspec(rows, 2, **room, wspace=0.29, hspace=0.4)
     for place, joint in enumerate(joints):
@@ -79,18 +77,6 @@ def plot_responses(
         strip.set_xlabel("time [s]")
         figure.align_ylabels([angle, strip])
     return figure
-
-
-def _label_responses(figure: Figure, traces: Sequence[Trace], error: str, largest: float) -> float:
-    """The legend; its height in inches."""
-    handles = [Line2D([], [], **one.look.line) for one in traces]
-    labels = [one.name for one in traces]
-    handles.append(Line2D([], [], linestyle="none"))
-    labels.append(f"error: {error}")
-    if largest > LARGEST_ERROR:
-        handles.append(mark_of_beyond())
-        labels.append(f"beyond ±{LARGEST_ERROR:g} rad (up to {largest:.2g})")
-    return legend_below(figure, handles, labels)
 
 
 def _off(one: Trace, against: Trace, joint: int, first: float, last: float) -> tuple[Floats, Floats, Look]:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import contextlib
 import io
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -57,6 +57,8 @@ _SETTINGS: dict[Any, Any] = {
 # Shares of the panel's width: what is cut off closer together has one mark, what is longer has several.
 _MARKS_APART, _LONG = 0.02, 0.08
 _MARK = 3.5  # points
+# Jumps would hide the error that is left after them (rad).
+LARGEST_ERROR = 0.2
 _DECADES = 3.0  # from here on a logarithmic axis has powers of ten alone
 
 
@@ -143,9 +145,14 @@ def _peaks(x: Floats, y: Floats, most: float, width: float) -> list[float]:
     return [float(x[one[int(np.argmax(y[one]))]]) for one in stretches]
 
 
-def mark_of_beyond() -> Line2D:
-    """The handle of those triangles for a legend."""
-    return Line2D([], [], marker="^", linestyle="none", color=GREY, markersize=_MARK)
+def label_responses(figure: Figure, lines: Mapping[str, Line2D], largest: float) -> float:
+    """The legend of responses, by the words of its lines, with those triangles if an error was so large; its height in
+    inches.
+    """
+    if largest > LARGEST_ERROR:
+        mark = Line2D([], [], marker="^", linestyle="none", color=GREY, markersize=_MARK)
+        lines = {**lines, f"beyond ±{LARGEST_ERROR:g} rad (up to {largest:.2g})": mark}
+    return legend_below(figure, list(lines.values()), list(lines))
 
 
 def make_logarithmic(axes: Axes) -> None:

@@ -16,13 +16,14 @@ from greywhale.pictures import looks
 from greywhale.pictures.membership import corners_of, draw_shapes
 from greywhale.pictures.page import (
     JOINTS,
+    LARGEST_ERROR,
     WIDE,
     headline,
+    label_responses,
     leave,
     legend_below,
     make_logarithmic,
     mark_beyond,
-    mark_of_beyond,
 )
 from greywhale.pictures.plotting import Axes, Figure, Line2D, plt
 from greywhale.protocol.joints import ALL, Joints
@@ -34,8 +35,6 @@ _UNCHANGED = "unchanged by the tuning"
 _CLOSE_BEFORE_S, _CLOSE_AFTER_S = 0.05, 0.45
 _JUMP_S = 0.1
 _WIDE_COSTS = 20.0  # from here on a logarithmic axis
-# Jumps would hide the error that is left after them (rad).
-_LARGEST_ERROR = 0.2
 _RESPONSES = (looks.BEFORE, looks.AFTER, looks.FLOOR)
 
 
@@ -109,7 +108,16 @@ def plot_responses(
     """
     figure = plt.figure(figsize=(WIDE, 8.6 - 1.85 * (len(JOINTS) - len(joints))))
     headline(figure, title)
-    below = _label_responses(figure, responses, _largest_error(time_s, leader, responses, joints))
+    lines = dict(zip(("leader", *responses), (looks.LEADER, *_RESPONSES), strict=False))
+    errors = {
+        joint: [
+            (one.time_s, np.interp(one.time_s, time_s, leader[:, joint]) - one.angles[:, joint], lines[name])
+            for name, one in responses.items()
+        ]
+        for joint in joints
+    }
+    largest = max(float(np.abs(one[1]).max()) for each in errors.values() for one in each)
+    below = label_responses(figure, {name: Line2D([], [], **look.line) for name, look in lines.items()}, largest)
     grid = figure.add_gridspec(len(joints), 1, **leave(figure, 0.62, 0.1, 0.44 + below, 0.46), hspace=0.33)
     close = _close_up(time_s, leader)
     for place, joint in enumerate(joints):
@@ -128,41 +136,14 @@ def plot_responses(
         whole.set_xlim(time_s[0], time_s[-1])
         near.set_xlim(*close)
         _fit(near, time_s, leader[:, joint], [(one.time_s, one.angles[:, joint]) for one in responses.values()])
-        _draw_errors(error, time_s, leader[:, joint], responses, joint)
+        for times, difference, look in errors[joint]:
+            error.plot(times, difference, **look.thin().line)
+        mark_beyond(error, LARGEST_ERROR, errors[joint])
         figure.align_ylabels([whole, error])
         if joint == joints[-1]:
             error.set_xlabel("time [s]")
             near.set_xlabel("time [s], the largest move")
     return figure
-
-
-def _label_responses(figure: Figure, responses: Mapping[str, Response], largest: float) -> float:
-    """The legend; its height in inches."""
-    handles = [Line2D([], [], **look.line) for look in (looks.LEADER, *_RESPONSES[: len(responses)])]
-    labels = ["leader", *responses]
-    if largest > _LARGEST_ERROR:
-        handles.append(mark_of_beyond())
-        labels.append(f"beyond ±{_LARGEST_ERROR:g} rad (up to {largest:.2g})")
-    return legend_below(figure, handles, labels)
-
-
-def _largest_error(time_s: Floats, leader: Floats, responses: Mapping[str, Response], joints: Joints) -> float:
-    errors = [
-        np.interp(one.time_s, time_s, leader[:, joint]) - one.angles[:, joint]
-        for one in responses.values()
-        for joint in joints
-    ]
-    return max(float(np.abs(error).max()) for error in errors)
-
-
-def _draw_errors(axes: Axes, time_s: Floats, leader: Floats, responses: Mapping[str, Response], joint: int) -> None:
-    """Leader less follower; what leaves the panel is marked at its edge."""
-    curves = []
-    for one, look in zip(responses.values(), _RESPONSES, strict=False):
-        error = np.interp(one.time_s, time_s, leader) - one.angles[:, joint]
-        axes.plot(one.time_s, error, **look.thin().line)
-        curves.append((one.time_s, error, look))
-    mark_beyond(axes, _LARGEST_ERROR, curves)
 
 
 def _draw_angles(axes: Axes, time_s: Floats, leader: Floats, responses: Mapping[str, Response], joint: int) -> None:
