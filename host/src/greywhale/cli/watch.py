@@ -8,8 +8,9 @@ from __future__ import annotations
 
 import textwrap
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from itertools import takewhile
 
 import click
 import numpy as np
@@ -65,15 +66,16 @@ class Look:
 def watch(device: Device, table: ParameterTable, seconds: float | None = None) -> None:
     """Show the board until Ctrl-C, or for `seconds` of its clock; `table` runs on it. Telemetry is off afterwards."""
     console = Console()
+    found = takewhile(lambda look: seconds is None or look.ticks <= 1000 * seconds, looks(device, table))
     try:
         if console.is_terminal:
             with Live(console=console, auto_refresh=False, transient=True) as live:
-                _each(
-                    looks(device, table), seconds, _Paced(lambda look: live.update(Text(as_table(look)), refresh=True))
-                )
+                for look in _paced(found):
+                    live.update(Text(as_table(look)), refresh=True)
         else:
             click.echo(HEADING)
-            _each(looks(device, table), seconds, _Spaced(lambda look: click.echo(as_line(look))))
+            for look in _spaced(found):
+                click.echo(as_line(look))
     finally:
         device.telemetry(0)
 
@@ -125,38 +127,22 @@ def as_line(look: Look) -> str:
     return ",".join([f"{look.ticks / 1000:.3f}", look.sample.state.key, look.sample.fault.key, *numbers])
 
 
-def _each(found: Iterator[Look], seconds: float | None, show: Callable[[Look], None]) -> None:
+def _paced(found: Iterable[Look]) -> Iterator[Look]:
+    """One look at most every so often by this machine's clock: a terminal takes its time."""
+    next_s = 0.0
     for look in found:
-        if seconds is not None and look.ticks > 1000 * seconds:
-            return
-        show(look)
-
-
-class _Paced:
-    """Shows at most every so often by this machine's clock: a terminal takes its time."""
-
-    def __init__(self, show: Callable[[Look], None]) -> None:
-        self._show = show
-        self._next_s = 0.0
-
-    def __call__(self, look: Look) -> None:
         now = time.monotonic()
-        if now >= self._next_s:
-            self._next_s = now + _REFRESH_S
-            self._show(look)
+        if now >= next_s:
+            next_s = now + _REFRESH_S
+            yield look
 
 
-class _Spaced:
-    """Shows every so often by the board's clock, and whenever its state or its fault changes."""
-
-    def __init__(self, show: Callable[[Look], None]) -> None:
-        self._show = show
-        self._next = 0
-        self._last: tuple[schema.State, schema.Fault] | None = None
-
-    def __call__(self, look: Look) -> None:
+def _spaced(found: Iterable[Look]) -> Iterator[Look]:
+    """One every so often by the board's clock, and whenever its state or its fault changes."""
+    ticks, last = 0, None
+    for look in found:
         now = (look.sample.state, look.sample.fault)
-        if look.ticks >= self._next or now != self._last:
-            self._last = now
-            self._next = look.ticks - look.ticks % _LINE_TICKS + _LINE_TICKS
-            self._show(look)
+        if look.ticks >= ticks or now != last:
+            last = now
+            ticks = look.ticks - look.ticks % _LINE_TICKS + _LINE_TICKS
+            yield look

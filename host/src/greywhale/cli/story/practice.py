@@ -13,7 +13,8 @@ import numpy as np
 from greywhale.arm import ArmParameters
 from greywhale.base.bench_process import RunningBench
 from greywhale.base.types import Progress, show_no_progress
-from greywhale.cli.story.recorder import HuntedError, record_excitation, record_motion
+from greywhale.board.record import record_led
+from greywhale.cli.story.recorder import HuntedError, record_motion, record_with
 from greywhale.files import controller as controller_file
 from greywhale.files.leader import save_leader
 from greywhale.files.log import Log
@@ -58,8 +59,11 @@ def practise(
     untuned = tables(base)[0]
     designed = design(nominal, pose, table=untuned, seconds=seconds, budget=DESIGN_BUDGET, report=named("practice"))
     save_leader(motion, designed.motion)
-    path = folder / "practice.csv"
-    logs = [record_excitation(bench, rest, designed.motion, path, paper_table(UNTUNED), named("practice")).log()]
+    path, told = folder / "practice.csv", named("practice")
+    first = record_with(  # while the person holds the leader still
+        bench, rest, paper_table(UNTUNED), told, lambda device: record_led(device, path, designed.motion, progress=told)
+    )
+    logs = [first.log()]
     for number, (name, controller) in enumerate(CHECKS):
         leader, path = folder / f"{name}_leader.csv", folder / f"{name}.csv"
         save_leader(leader, human_reaches(FIRST_SEED + number, CHECK_SHARE * seconds))

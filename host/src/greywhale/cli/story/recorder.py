@@ -14,12 +14,11 @@ from greywhale.base.bench_process import RunningBench
 from greywhale.base.errors import UserError
 from greywhale.base.types import Floats, Progress, show_no_progress
 from greywhale.board.device import Device
-from greywhale.board.record import Recording, record, record_led
+from greywhale.board.record import Recording, record
 from greywhale.board.stream import stream
 from greywhale.board.upload import read_parameters, upload_controller
 from greywhale.files.leader import load_leader
 from greywhale.files.log import Log, read_evidence
-from greywhale.files.trajectory import Trajectory
 from greywhale.protocol import schema
 from greywhale.protocol.joints import Joints
 
@@ -64,26 +63,10 @@ def record_motion(
     def play(device: Device) -> Recording:
         return record(device, log, length, enable=True, progress=report)
 
-    return _recorded(bench, leader, controller, report, play)
+    return record_with(bench, leader, controller, report, play)
 
 
-def record_excitation(
-    bench: RunningBench,
-    rest: Path,
-    motion: Trajectory,
-    log: Path,
-    controller: Path | None = None,
-    report: Progress = show_no_progress,
-) -> Recorded:
-    """Lead the follower along `motion` into `log`; the person holds the leader still, as in the file `rest`."""
-
-    def play(device: Device) -> Recording:
-        return record_led(device, log, motion, progress=report)
-
-    return _recorded(bench, rest, controller, report, play)
-
-
-def _recorded(
+def record_with(
     bench: RunningBench,
     leader: Path,
     controller: Path | None,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 
@@ -11,7 +11,7 @@ from greywhale.files.arm import load_arm
 from greywhale.identify.closed_loop import Loop
 from greywhale.identify.data import prepare
 from greywhale.identify.pack_search import BUDGET as IDENTIFYING
-from greywhale.identify.paper import PaperSearch
+from greywhale.identify.paper import LOWER, UPPER, PaperSearch
 from greywhale.optimise import minimise
 from greywhale.optimise.comparison import Plan, compare
 from greywhale.optimise.functions import FUNCTIONS, Setting
@@ -28,20 +28,13 @@ METHODS = ("gwo-woa", "gwo-woa-printed", "gwo-woa-relative", "gwo", "woa", "pso"
 SETTINGS: tuple[Setting, ...] = ("plain", "shifted")
 
 
-def box() -> tuple[list[float], list[float]]:
-    """Table 2's bounds."""
-    from greywhale.identify.paper import LOWER, UPPER
-
-    return list(np.tile(LOWER, 4)), list(np.tile(UPPER, 4))
-
-
 def identify_with(seed: int, seconds: float, period_ms: int, method: str) -> dict[str, Any]:
     """The lowest summed MSE (rad²) on data set 1 that a method finds, and where."""
     logs, tables = record_data(seconds, period_ms)
     table = tables[0]
     loop = Loop(prepare(logs[0], table["filter_shift"]), table, load_arm("white_box"))
     search = PaperSearch(load_arm("white_box"), [loop], 0, show_no_progress)
-    lower, upper = (np.array(one) for one in box())
+    lower, upper = np.tile(LOWER, 4), np.tile(UPPER, 4)
     best = minimise(search.costs, lower, upper, method=method, budget=IDENTIFYING, seed=seed)
     return {"cost": float(best.cost), "point": best.x.tolist()}
 
@@ -73,4 +66,4 @@ def compare_on(seed: int, function: str, runs: int) -> dict[str, Any]:
 
 
 def functions() -> tuple[str, ...]:
-    return cast(tuple[str, ...], tuple(FUNCTIONS))
+    return tuple(FUNCTIONS)
