@@ -10,7 +10,7 @@ import pytest
 
 from greywhale.pictures.page import png
 from greywhale.reproduce.pages import law, system
-from greywhale.reproduce.pages.document import Chapter, Code, Document, Entry, Picture, Row, Status, sheet, words
+from greywhale.reproduce.pages.document import Chapter, Code, Document, Entry, Picture, Row, Sheet, Status, words
 from greywhale.reproduce.pages.numbers import change, one, percent, several
 from greywhale.reproduce.pages.printed import TABLE_2
 from greywhale.reproduce.pages.tuning import quoted
@@ -27,7 +27,7 @@ def small() -> Document:
         words("Less < more & θ²."),
         Code(("a = b", "  c")),
         Picture(png(figure), "A line that falls."),
-        sheet(("row", "one", "two", "three"), [Row("a heading"), *many], (1,), ("A note.",)),
+        Sheet(("row", "one", "two", "three"), [Row("a heading"), *many], (1,), ("A note.",)),
     )
     entries = (Entry("Table 9", "Words", Status.COMPUTED, blocks), Entry("", "Own <b>", Status.OURS, (words("x"),)))
     return Document("A report", ("About it.",), (Chapter("Section 1", entries),))
@@ -66,14 +66,14 @@ def test_a_long_table_goes_on_over_pages_of_the_pdf_which_is_the_same_again(tmp_
 
 def test_a_table_too_wide_for_all_letters_still_fits_the_page() -> None:
     register_fonts()
-    points, widths = fit_columns(sheet(("",) * 3, [Row("x" * 200, ("y" * 200, "z" * 200))]))
+    points, widths = fit_columns(Sheet(("",) * 3, [Row("x" * 200, ("y" * 200, "z" * 200))]))
     assert points == LEAST_POINTS
     assert sum(widths) <= WIDTH + 1e-6
 
 
 def test_a_row_with_too_few_cells_is_refused() -> None:
     with pytest.raises(ValueError, match="1 cells for 2 columns"):
-        sheet(("a", "b", "c"), [Row("x", ("1",))])
+        Sheet(("a", "b", "c"), [Row("x", ("1",))])
 
 
 def test_numbers_are_medians_with_their_range() -> None:

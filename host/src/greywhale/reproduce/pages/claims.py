@@ -8,7 +8,7 @@ import numpy as np
 
 from greywhale.optimise.significance import FEWEST, Verdict, against_each
 from greywhale.reproduce.pages import identified, readings
-from greywhale.reproduce.pages.document import Chapter, Entry, Row, Sheet, Status, sheet
+from greywhale.reproduce.pages.document import Chapter, Entry, Row, Sheet, Status
 from greywhale.reproduce.pages.experiment import changes, columns_of
 from greywhale.reproduce.pages.found import Found
 from greywhale.reproduce.pages.identification import last_improvement
@@ -64,7 +64,7 @@ def table(found: Found) -> Sheet:
         _sets_alone(found),
         _superior(found),
     )
-    return sheet(
+    return Sheet(
         ("the paper says", "default arm", "arm like the paper's", "elsewhere", "verdict"),
         claims,
         notes=(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from enum import Enum
 from typing import Any
@@ -34,10 +34,10 @@ class Row:
 class Sheet:
     """A table: `columns` has the label's column first; `printed` are the columns (by place) that the paper prints."""
 
-    columns: tuple[str, ...]
-    rows: tuple[Row, ...]
-    printed: frozenset[int] = frozenset()
-    notes: tuple[str, ...] = ()
+    columns: Sequence[str]
+    rows: Sequence[Row]
+    printed: Collection[int] = ()
+    notes: Sequence[str] = ()
 
     def __post_init__(self) -> None:
         for row in self.rows:
@@ -153,7 +153,3 @@ class Document:
 
 def words(*paragraphs: str) -> Words:
     return Words(paragraphs)
-
-
-def sheet(columns: Sequence[str], rows: Sequence[Row], printed: Sequence[int] = (), notes: Sequence[str] = ()) -> Sheet:
-    return Sheet(tuple(columns), tuple(rows), frozenset(printed), tuple(notes))

@@ -9,7 +9,7 @@ from greywhale.pictures import looks
 from greywhale.pictures import paper_curves as curves
 from greywhale.pictures.identification import Trace
 from greywhale.protocol.firmware import JOINTS
-from greywhale.reproduce.pages.document import Chapter, Entry, Picture, Row, Sheet, Status, sheet, words
+from greywhale.reproduce.pages.document import Chapter, Entry, Picture, Row, Sheet, Status, words
 from greywhale.reproduce.pages.found import Found
 from greywhale.reproduce.pages.numbers import lower, one, several
 from greywhale.reproduce.pages.printed import MULTI_STEPS_LOWER, STEPS_LOWER
@@ -184,7 +184,7 @@ def _sheet(found: Found, columns: Columns, rows: list[Row]) -> Sheet:
         "The supervisor's checks of motion were off, so that each experiment is seen to its end.",
     ]
     notes += [f"A recording ended early: {reason}" for reason in sorted(ends - {""})]
-    return sheet(("", "before, printed", "after, printed", *columns), rows, (1, 2), notes)
+    return Sheet(("", "before, printed", "after, printed", *columns), rows, (1, 2), notes)
 
 
 def changes(found: Found, motion: str, arm: str = DEFAULT) -> dict[str, list[float]]:
@@ -216,7 +216,7 @@ def _simulated(found: Found) -> Sheet:
             bench = [totals(run["measured"], motion) for run in runs]
             ratio = [a / b for a, b in zip(model, bench, strict=True)]
             rows.append(Row(name, (several(model), several(bench), several(ratio, ".2f"))))
-    return sheet(
+    return Sheet(
         ("total MSE [rad²]", "on the identified model", "on the bench", "model / bench"),
         rows,
         notes=("A ratio far from 1 says that the model does not predict what its controllers do on the arm.",),

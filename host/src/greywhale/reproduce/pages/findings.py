@@ -8,7 +8,7 @@ import numpy as np
 
 from greywhale.arm.printed import ERRATA
 from greywhale.reproduce.pages import readings
-from greywhale.reproduce.pages.document import Chapter, Entry, Row, Status, sheet, words
+from greywhale.reproduce.pages.document import Chapter, Entry, Row, Sheet, Status, words
 from greywhale.reproduce.pages.found import Found
 from greywhale.reproduce.pages.numbers import change, lower, one, percent, several
 from greywhale.reproduce.pages.optimisers import SAID, function_ranks
@@ -52,7 +52,7 @@ def _errata(found: Found) -> tuple[Any, ...]:
         for arm in ("white_box", "grey_box"):
             cells += [f"{effect[arm]['angle']:.2g} rad", change(100 * (effect[arm]["mse"] - 1), ".2f")]
         rows.append(Row(name, tuple(cells)))
-    table = sheet(
+    table = Sheet(
         ("", "printed", "energy", "white box: angle", "MSE", "grey box: angle", "MSE"),
         rows,
         notes=(
@@ -78,7 +78,7 @@ def _periods(found: Found) -> tuple[Any, ...]:
             before, after = totals(run, motion, "before"), totals(run, motion)
             cells += [f"{before:.4f}", f"{after:.4f}"]
         rows.append(Row(f"{period} ms", tuple(cells)))
-    table = sheet(
+    table = Sheet(
         ("period", "steps, before", "steps, Table 10", "multi-steps, before", "multi-steps, Table 10"),
         rows,
         notes=("Total MSE in rad², the paper's grey-box arm at 15 V; K_d is scaled with the period.",),
@@ -110,7 +110,7 @@ def _objective(found: Found) -> tuple[Any, ...]:
         cost = first["J"][name]
         share = 100 * first["share_of_effort"][name]
         rows.append(Row(label, (f"{cost['one-sided']:.1f}", f"{cost['two-sided']:.1f}", f"{share:.0f} %")))
-    table = sheet(
+    table = Sheet(
         ("controllers", "J, one step", "J, multi-steps to both sides", "of it effort"),
         rows,
         notes=("Summed over the joints of the paper's grey-box arm, 20 V.",),
@@ -132,7 +132,7 @@ def _floor(found: Found) -> tuple[Any, ...]:
         floor = sum(found["floors"][f"mf {motion}"]["mse"])
         bound = sum(found["floors"][f"mf {motion}"]["bound"])
         rows.append(Row(motion, (one(before), one(after), one(floor), one(bound), f"{lower(before, floor):.1f} %")))
-    table = sheet(
+    table = Sheet(
         ("total MSE [rad²]", "before tuning", "Table 10", "floor", "bound", "most that tuning could gain"),
         rows,
         notes=(
@@ -169,7 +169,7 @@ def _identifiability(found: Found) -> tuple[Any, ...]:
         for name, values in known.items():
             factors = values.max(axis=0) / values.min(axis=0)
             rows.append(Row(name, tuple(f"{factor:.3g}" for factor in factors)))
-    table = sheet(
+    table = Sheet(
         ("highest over lowest, all seeds", *(f"joint {joint}" for joint in range(4))),
         rows,
         notes=(
@@ -200,7 +200,7 @@ def _centre_bias(found: Found) -> tuple[Any, ...]:
         )
         for method in METHODS
     ]
-    table = sheet(("method", "rank, plain", "rank, shifted", "place, plain", "place, shifted"), rows)
+    table = Sheet(("method", "rank, plain", "rank, shifted", "place, plain", "place, shifted"), rows)
     fallen = [
         SAID[method]
         for method in METHODS

@@ -16,7 +16,7 @@ from greywhale.pictures import paper_curves as curves
 from greywhale.pictures import paper_diagrams as diagrams
 from greywhale.pictures.identification import Trace
 from greywhale.reproduce.pages import identified
-from greywhale.reproduce.pages.document import Chapter, Code, Entry, Picture, Row, Sheet, Status, sheet, words
+from greywhale.reproduce.pages.document import Chapter, Code, Entry, Picture, Row, Sheet, Status, words
 from greywhale.reproduce.pages.found import Found
 from greywhale.reproduce.pages.numbers import lower, one, several
 from greywhale.reproduce.pages.printed import FIG_6_FLAT, GREY_BOX_BETTER, TABLE_2, TABLE_5
@@ -87,7 +87,7 @@ def _table_2() -> Sheet:
     }
     rows = [Row(name, (TABLE_2[name], used[name])) for name in TABLE_2]
     note = "Nineteen bounds are printed for twenty values: the third joint lacks a 0. 1e-06 stands for 0, by which the "
-    return sheet(("parameter", "printed", "used here"), rows, (1,), (note + "model would divide.",))
+    return Sheet(("parameter", "printed", "used here"), rows, (1,), (note + "model would divide.",))
 
 
 def _table_4(found: Found) -> tuple[Any, ...]:
@@ -103,7 +103,7 @@ def _table_4(found: Found) -> tuple[Any, ...]:
             ours = [several([run[joint][value] for run in runs], ".3g") for runs in (paper, default)]
             cells = (means, f"{printed:g}", f"{theirs:g}", *ours, f"{bench:g}")
             rows.append(Row(f"{symbol}{joint}", cells))
-    table = sheet(
+    table = Sheet(
         (
             "symbol",
             "parameter",
@@ -200,7 +200,7 @@ def _table_5(found: Found) -> tuple[Any, ...]:
                     ),
                 )
             )
-    table = sheet(
+    table = Sheet(
         ("MSE [rad²]", "white box, printed", "grey box, printed", "white box", "paper's method", "greywhale"),
         rows,
         (1, 2),

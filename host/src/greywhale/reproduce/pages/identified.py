@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from greywhale.reproduce.pages.document import Row, Sheet, sheet
+from greywhale.reproduce.pages.document import Row, Sheet
 from greywhale.reproduce.pages.found import Found
 from greywhale.reproduce.pages.numbers import lower, several
 from greywhale.reproduce.pages.printed import GREY_BOX_BETTER, GREY_BOX_BETTER_FITTED
@@ -43,7 +43,7 @@ def table(found: Found) -> Sheet:
             each = [gains(found, method, arm, place) for place in range(3)]
             worse = f"{int((np.array(each[1]) < 0.0).sum())} of {len(each[1])}"
             rows.append(Row(READINGS[method], (*(several(one, ".1f") for one in each), worse)))
-    return sheet(
+    return Sheet(
         ("per cent better than the white box", "data set 1", "data set 2", "data set 3", "worse on set 2"),
         rows,
         notes=(

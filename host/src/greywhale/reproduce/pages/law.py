@@ -5,7 +5,7 @@ from __future__ import annotations
 from greywhale.fuzzy.rules import RULES
 from greywhale.pictures import paper_curves as curves
 from greywhale.pictures import paper_diagrams as diagrams
-from greywhale.reproduce.pages.document import Chapter, Entry, Picture, Row, Status, sheet, words
+from greywhale.reproduce.pages.document import Chapter, Entry, Picture, Row, Sheet, Status, words
 from greywhale.reproduce.work.errata import surface
 from greywhale.reproduce.work.motions import printed
 
@@ -79,7 +79,7 @@ def chapter() -> Chapter:
                 "Rule base",
                 Status.COMPUTED,
                 (
-                    sheet(("rule", "printed", "firmware"), rules, (1,)),
+                    Sheet(("rule", "printed", "firmware"), rules, (1,)),
                     words(f"{same} of {len(rules)} rules of the firmware are the printed ones."),
                 ),
             ),

@@ -10,7 +10,7 @@ import numpy as np
 from greywhale.identify.pack_search import BUDGET as IDENTIFYING
 from greywhale.optimise.significance import FEWEST, SIGNIFICANCE, against, against_each, mean_ranks
 from greywhale.pictures import paper_curves as curves
-from greywhale.reproduce.pages.document import Chapter, Entry, Picture, Row, Sheet, Status, sheet, words
+from greywhale.reproduce.pages.document import Chapter, Entry, Picture, Row, Sheet, Status, words
 from greywhale.reproduce.pages.found import Found
 from greywhale.reproduce.pages.numbers import several
 from greywhale.reproduce.work.optimisers import METHODS, SETTINGS
@@ -95,7 +95,7 @@ def _table(costs: Mapping[str, list[float]], found: Found) -> Sheet:
         Row(SAID[name], (several(costs[name], ".4g"), f"{ranks[name]:.2f}", str(verdicts.get(name, ""))))
         for name in sorted(costs, key=lambda name: ranks[name])
     ]
-    return sheet(
+    return Sheet(
         ("method", f"lowest cost, {found.seeds}", "mean rank", "paper's GWO-WOA (2 to 0) against it"),
         rows,
         notes=(
@@ -135,7 +135,7 @@ def _functions(found: Found) -> Sheet:
             tally = "" if words_ is None else " / ".join(str(words_.count(word)) for word in WORDS)
             rows.append(Row(SAID[name], (f"{ranks[name]:.2f}", tally)))
     runs = found.request.function_runs
-    return sheet(
+    return Sheet(
         ("method", "mean rank", "paper's GWO-WOA (2 to 0) is lower / higher / not told apart, functions"),
         rows,
         notes=(

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from greywhale.reproduce.pages.document import Row, sheet, words
+from greywhale.reproduce.pages.document import Row, Sheet, words
 from greywhale.reproduce.pages.found import Found
 from greywhale.reproduce.pages.numbers import change, lower, one
 from greywhale.reproduce.pages.printed import STEPS_LOWER
@@ -45,7 +45,7 @@ def steps(found: Found) -> tuple[Any, ...]:
         cells = [f"{gain(found, reading, length):.0f} of {most(found, reading, length):.0f}" for length in LENGTHS_S]
         small = [found[reading.key][table]["small step"] for table in (BEFORE, AFTER)]
         rows.append(Row(reading.law, (*(f"{mse:.3f}" for mse in first), *cells, f"{lower(*small):.0f}")))
-    table = sheet(
+    table = Sheet(
         (
             "reading",
             f"before, {LENGTHS_S[0]:g} s",
@@ -109,7 +109,7 @@ def multi_steps(found: Found) -> tuple[Any, ...]:
                 ),
             )
         )
-    table = sheet(
+    table = Sheet(
         ("reading", "before", "Table 10", "floor", "Table 10 changes it by", "the floor by"),
         rows,
         notes=(f"Total MSE in rad² over {seconds:g} s of multi-steps, otherwise as above.",),
@@ -137,7 +137,7 @@ def friction(found: Found) -> tuple[Any, ...]:
         cells = [f"{study[table]['mse'][place]:.3f}" for study in studies.values() for table in (BEFORE, AFTER)]
         rows.append(Row(f"over {length:g} s", (*theirs, *cells)))
     names = [_volts(volts) for volts in FRICTION_V]
-    table = sheet(
+    table = Sheet(
         (
             "",
             "before, printed",

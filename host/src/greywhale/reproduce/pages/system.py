@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from greywhale.files.arm import load_arm
 from greywhale.pictures import paper_diagrams as diagrams
-from greywhale.reproduce.pages.document import Chapter, Entry, Picture, Row, Status, sheet, words
+from greywhale.reproduce.pages.document import Chapter, Entry, Picture, Row, Sheet, Status, words
 from greywhale.reproduce.pages.printed import TABLE_3
 
 REMARKS = {
@@ -24,7 +24,7 @@ def chapter() -> Chapter:
         rows.append(Row(symbol, (means, f"{value:.4g}", f"{used:.4g}", unit, REMARKS.get(symbol, ""))))
     rows.append(Row("M", ("mass at the tip", "0", f"{arm.tip.mass:.4g}", "kg", "")))
     rows.append(Row("g", ("gravity", "9.81", f"{arm.gravity:.4g}", "m/s²", "")))
-    table_3 = sheet(
+    table_3 = Sheet(
         ("symbol", "parameter", "printed", "used here", "unit", "remark"),
         rows,
         (2,),

@@ -15,7 +15,7 @@ from greywhale.pictures import paper_curves as curves
 from greywhale.pictures.identification import Trace
 from greywhale.protocol.firmware import JOINTS
 from greywhale.protocol.joints import named
-from greywhale.reproduce.pages.document import Chapter, Entry, Picture, Row, Sheet, Status, sheet, words
+from greywhale.reproduce.pages.document import Chapter, Entry, Picture, Row, Sheet, Status, words
 from greywhale.reproduce.pages.found import Found, controllers
 from greywhale.reproduce.pages.numbers import lower, one, several
 from greywhale.reproduce.pages.printed import FIG_19_FLAT, NO_WIDTH, TABLE_7
@@ -66,7 +66,7 @@ def _table_7() -> Sheet:
         "Upper bounds": "as printed; widths below 0.01 become 0.01",
     }
     rows = [Row(name, (TABLE_7[name], used[name])) for name in TABLE_7]
-    return sheet(("parameter", "printed", "used here"), rows, (1,))
+    return Sheet(("parameter", "printed", "used here"), rows, (1,))
 
 
 def value_of(rows: Controllers, joint: int, column: str, unit: int) -> float:
@@ -93,7 +93,7 @@ def _values(found: Found, strategy: str, wanted: Mapping[str, tuple[str, int]]) 
             Row(name, tuple(several([value_of(run, joint, *where) for run in own]) for joint in range(JOINTS)))
             for name, where in wanted.items()
         ]
-        blocks.append(sheet(("", *(f"Joint {joint}" for joint in range(JOINTS))), rows, notes=(note,)))
+        blocks.append(Sheet(("", *(f"Joint {joint}" for joint in range(JOINTS))), rows, notes=(note,)))
     return (*blocks, *_spread(results, runs, wanted))
 
 
@@ -132,7 +132,7 @@ def _beside(
         rows.append(Row(name, tuple(cells)))
     first = len(start)
     printed_columns = [*range(1, first), *range(first, first + 2 * JOINTS, 2)]
-    return sheet((*start, *pairs), rows, printed_columns, notes)
+    return Sheet((*start, *pairs), rows, printed_columns, notes)
 
 
 def _spread(
@@ -205,7 +205,7 @@ def _figure_19(found: Found) -> tuple[Any, ...]:
     rows = [Row(f"Joint {joint}", (str(FIG_19_FLAT[joint]), several(flat[joint], ".0f"))) for joint in range(JOINTS)]
     return (
         Picture(picture, "Best J so far; one line a seed."),
-        sheet(("last improvement", "printed", f"here, {found.seeds}"), rows, (1,)),
+        Sheet(("last improvement", "printed", f"here, {found.seeds}"), rows, (1,)),
     )
 
 
@@ -244,7 +244,7 @@ def _which(found: Found) -> tuple[Any, ...]:
             )
             best.setdefault(f"{strategy} {motion}", float(np.median([lower(before, value) for value in ours])))
     order = sorted(NAMES, key=lambda strategy: -best[f"{strategy} multi-steps"])
-    table = sheet(
+    table = Sheet(
         ("total MSE [rad²]", "before", "printed controllers", "paper's method", "lower by %", "floor"),
         rows,
         notes=(f"Paper's method: {found.seeds}, {ASIDE}. Floor: no controller whatever gets lower at that supply.",),
