@@ -31,11 +31,6 @@ def test_the_data_sheets_line_is_kept(torque: float, current: float, speed: floa
     assert arm.joint[0].motor.viscous >= 0.0
 
 
-def test_an_unknown_rotor_is_as_quick_as_usual_motors() -> None:
-    actuator = with_motor(DataSheet(12.0, 100.0, 1.5, 2.0, 6.0, 0.1)).actuator(0)
-    assert actuator.inertia / actuator.damping == pytest.approx(0.02)
-
-
 def test_the_winding_is_that_of_the_stall_current() -> None:
     """Where back-EMF leaves room for it, the resistance is voltage by stall current."""
     assert with_motor(SHEET).joint[0].motor.resistance == pytest.approx(12.0 / 2.0)

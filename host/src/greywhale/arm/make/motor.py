@@ -26,7 +26,7 @@ class DataSheet:
     stall_current: float
     no_load_speed: float
     no_load_current: float
-    rotor_inertia: float | None = None  # kg m², of the motor alone
+    rotor_inertia: float  # kg m², of the motor alone
 
     @property
     def slope(self) -> float:
@@ -45,11 +45,6 @@ def contradiction(stall_torque: float, stall_current: float, no_load_speed: floa
     )
 
 
-def usual_rotor_inertia(sheet: DataSheet) -> float:
-    """kg m² of a motor of which only this is known."""
-    return USUAL_TIME_S * sheet.slope / sheet.gear_ratio**2
-
-
 def tables(sheet: DataSheet) -> dict[str, dict[str, float]]:
     """`motor` and `friction` of an arm file's joint."""
     coulomb = sheet.stall_torque * sheet.no_load_current / sheet.stall_current
@@ -57,10 +52,9 @@ def tables(sheet: DataSheet) -> dict[str, dict[str, float]]:
     ratio = sheet.gear_ratio
     at_joint = min((sheet.stall_torque + coulomb) / sheet.stall_current, BACK_EMF_SHARE * sheet.slope / per_volt)
     viscous = sheet.slope - per_volt * at_joint
-    inertia = sheet.rotor_inertia if sheet.rotor_inertia is not None else usual_rotor_inertia(sheet)
     return {
         "motor": {
-            "inertia": inertia,
+            "inertia": sheet.rotor_inertia,
             "resistance": at_joint / per_volt,
             "torque_constant": at_joint / ratio,
             "viscous": viscous / ratio**2,
