@@ -14,9 +14,10 @@ import tomllib
 from collections.abc import Iterable, Iterator, Sequence
 from difflib import get_close_matches
 from pathlib import Path
-from typing import Any, ClassVar, NamedTuple, TypeVar
+from typing import Any, ClassVar, TypeVar
 
 from pydantic import BaseModel, ConfigDict, ValidationError
+from pydantic_core import ErrorDetails
 
 from greywhale.base.errors import UserError, cut, os_reason
 from greywhale.base.formats.kinds import Kind, refuse_other_kind
@@ -163,51 +164,39 @@ def _numbers(value: object, location: tuple[str | int, ...]) -> Iterator[tuple[t
 
 
 def _sentence(name: str, model: type[BaseModel], error: ValidationError) -> str:
-    problems = [Problem(found["loc"], found["type"], found["msg"], found["input"]) for found in error.errors()]
     # A misspelt key is also a missing one, and says more.
-    problems.sort(key=lambda one: one.kind != "extra_forbidden")
+    problems = sorted(error.errors(), key=lambda one: one["type"] != "extra_forbidden")
     # An array with a bad item is also reported as too short; that is no problem of its own.
-    whole = [one for one in problems if one.kind != "too_short" or not any(one.contains(other) for other in problems)]
+    above = {other["loc"][:size] for other in problems for size in range(len(other["loc"]))}
+    whole = [one for one in problems if one["type"] != "too_short" or one["loc"] not in above]
     text = f"{name}: {_problem(whole[0], model)}"
     if len(whole) > 1:
         text += f" (and {len(whole) - 1} more in this file)"
     return text + "."
 
 
-class Problem(NamedTuple):
-    """One complaint of pydantic."""
-
-    location: tuple[str | int, ...]
-    kind: str
-    message: str
-    value: object
-
-    def contains(self, other: Problem) -> bool:
-        size = len(self.location)
-        return len(other.location) > size and other.location[:size] == self.location
-
-
-def _problem(problem: Problem, model: type[BaseModel]) -> str:
-    key = key_path(problem.location)
-    if problem.kind == "extra_forbidden":
-        known = _at(model.model_json_schema(), problem.location[:-1]).get("properties", ())
-        return f"unknown key {key}; {advice(str(problem.location[-1]), known)}"
-    if problem.kind == "missing":
+def _problem(problem: ErrorDetails, model: type[BaseModel]) -> str:
+    location, kind, value = problem["loc"], problem["type"], problem["input"]
+    key = key_path(location)
+    if kind == "extra_forbidden":
+        known = _at(model.model_json_schema(), location[:-1]).get("properties", ())
+        return f"unknown key {key}; {advice(str(location[-1]), known)}"
+    if kind == "missing":
         return f"{key} is missing"
-    if problem.kind in _BOUNDS:
-        bounds = _range(model.model_json_schema(), problem.location)
-        return f"{key} is {cut(json.dumps(problem.value))}, but it must be {bounds}"
-    if problem.kind in ("too_short", "too_long") and isinstance(problem.value, list):
-        count = _fixed_count(model.model_json_schema(), problem.location)
+    if kind in _BOUNDS:
+        bounds = _range(model.model_json_schema(), location)
+        return f"{key} is {cut(json.dumps(value))}, but it must be {bounds}"
+    if kind in ("too_short", "too_long") and isinstance(value, list):
+        count = _fixed_count(model.model_json_schema(), location)
         if count is not None:
-            what = f"[[{key}]]" if all(isinstance(one, dict) for one in problem.value) else f"values of {key}"
-            return f"{len(problem.value)} {what} where there must be exactly {count}"
-    message = _lower_first(problem.message.removeprefix("Value error, ").removeprefix("Assertion failed, "))
+            what = f"[[{key}]]" if all(isinstance(one, dict) for one in value) else f"values of {key}"
+            return f"{len(value)} {what} where there must be exactly {count}"
+    message = _lower_first(problem["msg"].removeprefix("Value error, ").removeprefix("Assertion failed, "))
     message = message.replace("input should", "it should").rstrip(".")
-    if isinstance(problem.value, dict | list):
+    if isinstance(value, dict | list):
         # A rule over a whole table words its own sentence; printing the table itself would not help.
-        return f"{key}: {message}" if problem.location else message
-    return f"{key} is {cut(json.dumps(problem.value))}, but {message}"
+        return f"{key}: {message}" if location else message
+    return f"{key} is {cut(json.dumps(value))}, but {message}"
 
 
 # Kinds of complaint about a number out of range; the words for each bound in a JSON schema.
