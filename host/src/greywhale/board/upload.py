@@ -44,21 +44,15 @@ class Uploaded:
         return {"parameter_crc": f"0x{self.param_crc:04x}", "changed": list(self.changed)}
 
 
-def read_parameter(device: Device, name: str) -> int:
-    """The raw value of one parameter of the running set."""
-    index = schema.PARAMETER_BY_NAME[name].index
-    reply = device.ask(schema.ParamGetRequest(index))
-    if reply.index != index:
-        raise UserError(f"{device.port}: asked for parameter {index}, the board answered {reply.index}; try again.")
-    return reply.value
-
-
 def read_parameters(device: Device, report: Progress = show_no_progress) -> ParameterTable:
     """Read the running set; its CRC proves that it is whole."""
     values = []
-    for parameter in schema.PARAMETERS:
-        report("reading parameters", parameter.index / len(schema.PARAMETERS))
-        values.append(read_parameter(device, parameter.name))
+    for index in range(len(schema.PARAMETERS)):
+        report("reading parameters", index / len(schema.PARAMETERS))
+        reply = device.ask(schema.ParamGetRequest(index))
+        if reply.index != index:
+            raise UserError(f"{device.port}: asked for parameter {index}, the board answered {reply.index}; try again.")
+        values.append(reply.value)
     expected = device.greet().param_crc
     computed = schema.param_crc(values)
     if computed != expected:

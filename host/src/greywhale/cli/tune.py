@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, NotRequired, TypedDict
 
@@ -110,7 +109,14 @@ def command(
         require_within("workers", workers, 1, MOST_WORKERS)
     check_request(**search, bounds=limits)
     journal = out.parent / f"{out.name}.journal"
-    _check_files(out, journal, resume, overwrite, pictures, [model_file, arm, params])
+    overwrite = overwrite or resume
+    refuse_inputs(out, model_file, arm, params)
+    require_new(overwrite, out)
+    require_files(journal)
+    require_folder(pictures, "pictures", "sets.png")
+    require_no_files(overwrite, pictures, "sets.png", "convergence.png", "responses_*.png")
+    if resume and not journal.exists():
+        raise BadUsage(f"{journal}: no interrupted tuning is there to go on with; leave --resume out.")
     model = load_model(model_file, samples=samples, seed=search["seed"], force=force, params=params, arm=arm)
     first = controller_row(controller_file.load(start)) if start is not None else None
     with progress() as report:
@@ -168,21 +174,3 @@ def _bounds(given: tuple[str, ...]) -> dict[str, tuple[float, float]]:
             raise BadUsage(f"--bounds {one}: {name} has bounds already; give them once.")
         found[name] = limits
     return found
-
-
-def _check_files(
-    out: Path,
-    journal: Path,
-    resume: bool,
-    overwrite: bool,
-    pictures: Path | None,
-    inputs: Sequence[str | Path | None],
-) -> None:
-    """Refuse wrong files before any work, not after it."""
-    refuse_inputs(out, *inputs)
-    require_new(overwrite or resume, out)
-    require_files(journal)
-    require_folder(pictures, "pictures", "sets.png")
-    require_no_files(overwrite or resume, pictures, "sets.png", "convergence.png", "responses_*.png")
-    if resume and not journal.exists():
-        raise BadUsage(f"{journal}: no interrupted tuning is there to go on with; leave --resume out.")
