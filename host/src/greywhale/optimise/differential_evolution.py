@@ -35,12 +35,12 @@ class _Channel:
 
     def __init__(self) -> None:
         self._batches: SimpleQueue[Floats | BaseException] = SimpleQueue()
-        self._costs: SimpleQueue[Floats | None] = SimpleQueue()
+        self.costs: SimpleQueue[Floats | None] = SimpleQueue()
 
     def cost(self, columns: Floats) -> Floats:
         """The cost function as scipy sees it."""
         self._batches.put(columns.T.copy())
-        costs = self._costs.get()
+        costs = self.costs.get()
         if costs is None:
             raise _Closed
         return costs
@@ -65,12 +65,6 @@ class _Channel:
         if isinstance(batch, BaseException):
             raise batch
         return batch
-
-    def answer(self, costs: Floats) -> None:
-        self._costs.put(costs)
-
-    def close(self) -> None:
-        self._costs.put(None)
 
 
 class DifferentialEvolution(Optimiser):
@@ -108,7 +102,7 @@ class DifferentialEvolution(Optimiser):
         }
         self._channel = _Channel()
         self._thread: threading.Thread | None = None
-        self._finalizer = weakref.finalize(self, self._channel.close)
+        self._finalizer = weakref.finalize(self, self._channel.costs.put, None)
 
     def _propose(self) -> Floats:
         if self._thread is None:
@@ -120,7 +114,7 @@ class DifferentialEvolution(Optimiser):
         return self.box.clip(self._channel.next_batch())
 
     def _learn(self, candidates: Floats, costs: Floats) -> None:
-        self._channel.answer(np.where(np.isfinite(costs), costs, WORST))
+        self._channel.costs.put(np.where(np.isfinite(costs), costs, WORST))
 
     def close(self) -> None:
         self._finalizer()

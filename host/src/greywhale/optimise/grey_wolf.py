@@ -99,7 +99,6 @@ class GreyWolf(Optimiser):
         super().__init__(box, budget, source, pack=pack, start=start)
         self._a_end = self.usual_a_end if a_end is None else a_end
         self._elitist = elitist
-        self._pack = np.empty((0, box.dimensions))
         self._leaders = np.empty((0, box.dimensions))
         self._leader_costs = np.empty(0)
         self._move = 0

@@ -62,6 +62,7 @@ class Optimiser(Closing):
         self._start = np.empty((0, box.dimensions)) if start is None else box.check_inside(start)
         if len(self._start) > pack:
             raise ValueError(f"{len(self._start)} start points do not fit into a pack of {pack}")
+        self._pack = np.empty((0, box.dimensions))  # of methods that move one
         self._pending: Floats | None = None
         self._cut_short = False
         self._evaluations = 0

@@ -18,12 +18,11 @@ from __future__ import annotations
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from greywhale.base.types import Floats
-from greywhale.optimise.box import Box, Source, latin_hypercube
+from greywhale.optimise.box import latin_hypercube
 from greywhale.optimise.grey_wolf import LEADERS, Draw, best_three, draw_alpha_factor, hunt
-from greywhale.optimise.optimiser import PACK, Optimiser
+from greywhale.optimise.optimiser import Optimiser
 
 # Chosen by trial on ten of the standard functions, shifted, with other seeds than those of any published figure. levy,
 # schwefel226 and all rotated functions were kept aside. docs/optimise.md has the figures.
@@ -39,14 +38,8 @@ class RelativeWolfWhale(Optimiser):
     smallest_pack: ClassVar[int] = LEADERS
     _scatter = staticmethod(latin_hypercube)
 
-    def __init__(
-        self, box: Box, budget: int, source: Source, *, pack: int = PACK, start: ArrayLike | None = None
-    ) -> None:
-        super().__init__(box, budget, source, pack=pack, start=start)
-        # In unit coordinates.
-        self._pack = np.empty((0, box.dimensions))
-        self._costs = np.empty(0)
-        self._tried = self._pack
+    _costs: Floats
+    _tried: Floats  # in unit coordinates, as the pack
 
     def _propose(self) -> Floats:
         if not len(self._pack):

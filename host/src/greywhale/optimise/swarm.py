@@ -9,11 +9,9 @@ from __future__ import annotations
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from greywhale.base.types import Floats
-from greywhale.optimise.box import Box, Source
-from greywhale.optimise.optimiser import PACK, Optimiser
+from greywhale.optimise.optimiser import Optimiser
 
 INERTIA = 0.7298
 PULL = 1.49618
@@ -33,33 +31,28 @@ class Swarm(Optimiser):
 
     name: ClassVar[str] = "pso"
 
-    def __init__(
-        self, box: Box, budget: int, source: Source, *, pack: int = PACK, start: ArrayLike | None = None
-    ) -> None:
-        super().__init__(box, budget, source, pack=pack, start=start)
-        self._places = np.empty((0, box.dimensions))
-        self._velocity = np.zeros((pack, box.dimensions))
-        self._own_best = self._places
-        self._own_costs = np.full(pack, np.inf)
+    _velocity: Floats
+    _own_best: Floats
+    _own_costs: Floats
 
     def _propose(self) -> Floats:
-        if not len(self._places):
+        if not len(self._pack):
             return self._first_pack()
-        r1, r2 = self._source.random(self._places.shape), self._source.random(self._places.shape)
+        r1, r2 = self._source.random(self._pack.shape), self._source.random(self._pack.shape)
         limit = FASTEST * self.box.width
-        self._velocity = steer(self._velocity, self._places, self._own_best, self.best.x, limit, r1, r2)
-        moved = self._places + self._velocity
+        self._velocity = steer(self._velocity, self._pack, self._own_best, self.best.x, limit, r1, r2)
+        moved = self._pack + self._velocity
         inside = self.box.clip(moved)
         self._velocity[inside != moved] = 0.0
         return inside
 
     def _learn(self, candidates: Floats, costs: Floats) -> None:
-        if not len(self._places):
-            self._own_best = candidates
+        if not len(self._pack):
+            self._velocity, self._own_best, self._own_costs = np.zeros_like(candidates), candidates, costs
         better = costs < self._own_costs
         self._own_best = np.where(better[:, None], candidates, self._own_best)
         self._own_costs = np.where(better, costs, self._own_costs)
-        self._places = candidates
+        self._pack = candidates
 
 
 class RandomSearch(Optimiser):

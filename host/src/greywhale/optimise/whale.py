@@ -48,7 +48,6 @@ class Whale(Optimiser):
     ) -> None:
         super().__init__(box, budget, source, pack=pack, start=start)
         self._elitist = elitist
-        self._pack = np.empty((0, box.dimensions))
         self._prey = np.zeros(box.dimensions)
         self._move = 0
 
