@@ -24,32 +24,20 @@ LINE = re.compile(rb"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d\.\d{3}[+-]\d{4} ")
 PACKAGES = ("click", "numpy", "pydantic", "pyserial", "scipy")
 
 
-class _Quiet(logging.Handler):
-    """A full disk or a closed terminal ends no command."""
-
-    def handleError(self, record: logging.LogRecord) -> None:
-        pass
+logging.raiseExceptions = False  # a full disk or a closed terminal ends no command
 
 
-class _Terminal(_Quiet):
+class _Terminal(logging.Handler):
     """Writes to stderr as it is at that moment: a progress bar puts itself in its place."""
 
     def emit(self, record: logging.LogRecord) -> None:
-        try:
+        with contextlib.suppress(OSError, ValueError):
             sys.stderr.write(printable(self.format(record)) + "\n")
-        except (OSError, ValueError):
-            self.handleError(record)
-
-
-class _File(_Quiet, logging.FileHandler):
-    """Times with milliseconds and the offset of the time zone."""
-
-    def __init__(self, path: Path) -> None:
-        super().__init__(path, encoding="utf-8")
-        self.setFormatter(_Lines("%(asctime)s %(levelname)s %(name)s: %(message)s"))
 
 
 class _Lines(logging.Formatter):
+    """Times with milliseconds and the offset of the time zone."""
+
     def formatTime(self, record: logging.LogRecord, datefmt: str | None = None) -> str:
         moment = time.localtime(record.created)
         return f"{time.strftime('%Y-%m-%dT%H:%M:%S', moment)}.{record.msecs:03.0f}{time.strftime('%z', moment)}"
@@ -92,6 +80,8 @@ def _open(path: Path) -> logging.Handler:
     try:
         if path.is_file() and (head := path.read_bytes()[:64]) and not LINE.match(head):
             raise BadUsage(f"{path}: this is no log of --log-file; name another file.")
-        return _File(path)
+        file = logging.FileHandler(path, encoding="utf-8")
     except OSError as error:
         raise BadUsage(f"{path}: cannot be written: {os_reason(error)}.") from None
+    file.setFormatter(_Lines("%(asctime)s %(levelname)s %(name)s: %(message)s"))
+    return file
