@@ -14,7 +14,7 @@ import threading
 from collections import deque
 from collections.abc import Callable, Iterator
 from types import TracebackType
-from typing import Self
+from typing import Any, Self
 
 from greywhale.base.errors import UserError
 from greywhale.board.refusal import RefusedError
@@ -164,17 +164,13 @@ class Device:
 
     def enable(self, lease_ms: int) -> None:
         """Start the motors. They go off by themselves when the lease is not renewed in time (0: only on stop)."""
-        self._session.refuse_motion()
-        self._motors_may_run = True
-        self.lease_ms = lease_ms
+        self._expect_motion(lease_ms)
         logger.info("%s: motors on, lease %d ms", self.port, lease_ms)
         self.ask(schema.EnableRequest(lease_ms))
 
     def lead(self, lease_ms: int) -> schema.LeadReply:
         """Start the motors with this host in the leader's place; `lead_point` sends the points of the reference."""
-        self._session.refuse_motion()
-        self._motors_may_run = True
-        self.lease_ms = lease_ms
+        self._expect_motion(lease_ms)
         self._lead_progress = self._lead_refused = None
         logger.info("%s: motors on, led by this host, lease %d ms", self.port, lease_ms)
         return self.ask(schema.LeadRequest(lease_ms))
@@ -182,8 +178,7 @@ class Device:
     def lead_point(self, number: int, step: tuple[int, int, int, int]) -> None:
         """Send a point of the reference without waiting for the answer; `lead_progress` returns that later."""
         self._session.refuse_motion()
-        request = schema.LeadPointRequest(number, step)
-        self._transport.write(encode_frame(request.TYPE, self._next_sequence(), request.pack()))
+        self._send(schema.LeadPointRequest(number, step), self._next_sequence())
 
     def lead_progress(self) -> schema.LeadPointReply | None:
         """The last answer to a point, None before the first. Raises where the board refused it."""
@@ -221,8 +216,7 @@ class Device:
 
     def renew(self) -> None:
         """Renew the lease without waiting for the answer; the next renewal replaces a lost one."""
-        request = schema.RenewRequest(self.lease_ms)
-        self._transport.write(encode_frame(request.TYPE, self._next_sequence(), request.pack()))
+        self._send(schema.RenewRequest(self.lease_ms), self._next_sequence())
 
     def lend(self) -> tuple[Line, Session]:
         """Line and session, for who sends and reads frames there from now on; closing the device stops the motors."""
@@ -290,8 +284,15 @@ class Device:
 
     def _send_clutch(self, action: str) -> None:
         """The same for the clutch: engage or disengage."""
-        request = schema.ClutchRequest(schema.ClutchAction[action.upper()])
-        self._transport.write(encode_frame(request.TYPE, _UNASKED, request.pack()))
+        self._send(schema.ClutchRequest(schema.ClutchAction[action.upper()]), _UNASKED)
+
+    def _send(self, request: Request[Any], sequence: int) -> None:
+        self._transport.write(encode_frame(request.TYPE, sequence, request.pack()))
+
+    def _expect_motion(self, lease_ms: int) -> None:
+        self._session.refuse_motion()
+        self._motors_may_run = True
+        self.lease_ms = lease_ms
 
     def _next_sequence(self) -> int:
         self._sequence = self._sequence % 255 + 1
