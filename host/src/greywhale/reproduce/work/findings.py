@@ -81,37 +81,26 @@ def _held(time_s: Floats, leader: Floats, follower: Floats) -> dict[str, list[An
     return found
 
 
-class TwoSided:
-    """The paper's J over a multi-step to both sides, all four joints at once, instead of one joint's step."""
-
-    def __init__(self) -> None:
-        model = load_model("grey_box", force=True)
-        supply = supply_of("sf")
-        table, self.plant = setting(model, supply)
-        motion = MOTIONS["multi-steps"]()
-        self._experiment = Experiment(motion, model.arm, table=table, noise=False, wait_s=WAIT_S, soft_start=False)
-
-    def parts(self, rows: Controllers) -> tuple[Floats, Floats]:
-        """ITAE and ITAU, (n, 4) each, for (n, 4, 13)."""
-        result = self._experiment.run(rows, self.plant, threads=1)
-        return result.itae, result.itau
-
-    def costs(self, rows: Controllers) -> Floats:
-        itae, itau = self.parts(rows)
-        return itae + itau
-
-
 def objective(seed: int) -> dict[str, Any]:
     """What J rewards: the effort's share of it, J of doing nothing, and what a search on moves to both sides finds."""
     before = printed("before_tuning")
     idle = before.copy()
     idle[:, CONTROLLER_COLUMNS.index("ku_mv")] = idle[:, CONTROLLER_COLUMNS.index("ki")] = 0
-    model, both = load_model("grey_box", force=True), TwoSided()
+    model = load_model("grey_box", force=True)
+    table, plant = setting(model, supply_of("sf"))
     loops = Loops(model, "sf", before, 1)
+    # A multi-step to both sides, all four joints at once, instead of one joint's step.
+    both = Experiment(MOTIONS["multi-steps"](), model.arm, table=table, noise=False, wait_s=WAIT_S, soft_start=False)
+
+    def parts(rows: Controllers) -> tuple[Floats, Floats]:
+        """ITAE and ITAU, (n, 4) each, for (n, 4, 13)."""
+        result = both.run(rows, plant, threads=1)
+        return result.itae, result.itau
+
     rows = {"doing nothing": idle, "before": before, "table_8": printed("table_8"), "table_10": printed("table_10")}
     found: dict[str, Any] = {"J": {}, "share_of_effort": {}}
     for name, row in rows.items():
-        itae, itau = both.parts(row[None])
+        itae, itau = parts(row[None])
         found["J"][name] = {
             "one-sided": float(loops.costs(row[None]).sum()),
             "two-sided": float((itae + itau).sum()),
@@ -121,8 +110,8 @@ def objective(seed: int) -> dict[str, Any]:
     best = SearchState.nothing(before)
     with TuningJournal(None, {}) as book:
         search_in_lockstep(
-            space, both.costs, best, book, stage="two-sided", method=METHOD, budget=BUDGET, seed=(seed,),
-            tick=lambda now: None, pack=AGENTS,
+            space, lambda rows: np.add(*parts(rows)), best, book, stage="two-sided", method=METHOD, budget=BUDGET,
+            seed=(seed,), tick=lambda now: None, pack=AGENTS,
         )  # fmt: skip
     found["ku"] = (best.best[:, CONTROLLER_COLUMNS.index("ku_mv")] / 1000.0).tolist()
     found["ki"] = (best.best[:, CONTROLLER_COLUMNS.index("ki")] / GAIN_UNIT).tolist()
