@@ -44,6 +44,9 @@ class BenchProcess(Closing):
             stderr=self._errors,
             start_new_session=True,  # Ctrl-C belongs to the host alone, which then ends the bench in good order
         )
+        assert self._process.stdin is not None
+        assert self._process.stdout is not None
+        self._in, self._out = self._process.stdin, self._process.stdout
         try:
             self.port: str = self._answer()["port"]
         except BaseException:
@@ -57,10 +60,9 @@ class BenchProcess(Closing):
 
     def command(self, text: str) -> dict[str, Any]:
         """Carry out one bench command, for example "power off", and return its answer."""
-        assert self._process.stdin is not None
         try:
-            self._process.stdin.write(text.encode() + b"\n")
-            self._process.stdin.flush()
+            self._in.write(text.encode() + b"\n")
+            self._in.flush()
         except BrokenPipeError:
             raise self._ended() from None
         answer = self._answer()
@@ -70,23 +72,20 @@ class BenchProcess(Closing):
 
     def close(self) -> None:
         """End the bench, by force if it does not end when told to."""
-        if self._process.stdin is not None and not self._process.stdin.closed:
-            with contextlib.suppress(BrokenPipeError):  # it has ended already
-                self._process.stdin.close()
+        with contextlib.suppress(BrokenPipeError):  # it has ended already
+            self._in.close()
         try:
             self._process.wait(timeout=10.0)
         except subprocess.TimeoutExpired:
             self._process.kill()
             self._process.wait()
-        if self._process.stdout is not None:
-            self._process.stdout.close()
+        self._out.close()
         self._errors.close()
 
     def _answer(self) -> dict[str, Any]:
-        assert self._process.stdout is not None
-        if not select.select([self._process.stdout], [], [], ANSWER_WAIT_S)[0]:
+        if not select.select([self._out], [], [], ANSWER_WAIT_S)[0]:
             raise UserError(f"the bench does not answer within {ANSWER_WAIT_S:g} s; stop it and try again.")
-        line = self._process.stdout.readline()
+        line = self._out.readline()
         if not line:
             raise self._ended()
         answer: dict[str, Any] = json.loads(line)

@@ -18,13 +18,8 @@ class Kind(Enum):
     PARAMETERS = "a parameter file", "greywhale params restore"
     ANSWERS = "a file of answers", "greywhale arm new --answers"
 
-    @property
-    def words(self) -> str:
-        return self.value[0]
-
-    @property
-    def taker(self) -> str:
-        return self.value[1]
+    def __init__(self, words: str, taker: str) -> None:
+        self.words, self.taker = words, taker
 
 
 # Keys that only one kind has, in one of its [[joint]] and [[link]] tables.
