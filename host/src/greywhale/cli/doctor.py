@@ -7,7 +7,7 @@ from pathlib import Path
 import click
 
 from greywhale.base.errors import BadUsage, counted
-from greywhale.board.doctor import Finding, Options, Verdict, examine, worst
+from greywhale.board.doctor import Finding, Verdict, examine, worst
 from greywhale.board.doctor.examine import LINK_S
 from greywhale.cli.output import FILE, OnPort, json_option, option, port_option, progress, show
 from greywhale.protocol.ports import choose_port
@@ -55,7 +55,7 @@ def command(
         raise BadUsage("--hex belongs to --image; add that, or leave it out.")
     chosen = choose_port(port)
     with progress(brief=True) as report:
-        findings = examine(Options(chosen, params, seconds, supply, image, hex_file), report)
+        findings = examine(chosen, params, seconds, supply, image, hex_file, report)
     verdict = worst(findings)
     answer: Answer = {"port": chosen, "verdict": verdict, "findings": findings}
     show(as_json, answer, "\n".join([*map(_line, findings), "", _summary(findings)]), hang=INDENT)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from greywhale.board.doctor.examine import Options, examine
+from greywhale.board.doctor.examine import examine
 from greywhale.board.doctor.finding import Finding, Verdict, worst
 
-__all__ = ["Finding", "Options", "Verdict", "examine", "worst"]
+__all__ = ["Finding", "Verdict", "examine", "worst"]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from pathlib import Path
 
 from greywhale.base.errors import UserError
@@ -23,43 +22,44 @@ LINK_S, REST_S = 10.0, 2.0
 AT_REST = (schema.State.DISABLED, schema.State.FAULT)
 
 
-@dataclass(frozen=True)
-class Options:
-    """`params` is a file of parameters that the board should run; `link_s` is how long the link is loaded;
-    `supply_v` is what a person measured at the motors' supply; with `image` the firmware is read back and compared
-    with `hex_file`, or with the shipped one."""
+def examine(
+    port: str,
+    params: Path | None,
+    link_s: float,
+    supply_v: float | None,
+    image: bool,
+    hex_file: Path | None,
+    report: Progress = show_no_progress,
+) -> list[Finding]:
+    """All findings, in the order in which a person would mend them.
 
-    port: str
-    params: Path | None = None
-    link_s: float = LINK_S
-    supply_v: float | None = None
-    image: bool = False
-    hex_file: Path | None = None
-
-
-def examine(options: Options, report: Progress = show_no_progress) -> list[Finding]:
-    """All findings, in the order in which a person would mend them."""
-    found = examine_port(options.port)
+    `params` is a file of parameters that the board should run; `link_s` is how long the link is loaded; `supply_v` is
+    what a person measured at the motors' supply; with `image` the firmware is read back and compared with `hex_file`,
+    or with the shipped one.
+    """
+    found = examine_port(port)
     if found[-1].verdict is Verdict.BAD:
         return found
     try:
-        with Session.of(options.port):  # also between two openings
-            with Device(options.port, restart=False) as device:
-                found += _examine_board(device, options, report)
+        with Session.of(port):  # also between two openings
+            with Device(port, restart=False) as device:
+                found += _examine_board(device, params, link_s, supply_v, report)
                 motors_on = device.status().state not in AT_REST
-            found += _examine_image(options, motors_on, report) if options.image else [memory.not_examined()]
+            found += _examine_image(port, hex_file, motors_on, report) if image else [memory.not_examined()]
     except UserError as error:
         found.append(Finding("board", Verdict.BAD, upper_first(error.message)))
     return found
 
 
-def _examine_board(device: Device, options: Options, report: Progress) -> Iterator[Finding]:
+def _examine_board(
+    device: Device, params: Path | None, link_s: float, supply_v: float | None, report: Progress
+) -> Iterator[Finding]:
     yield from board.examine_hello(device.hello, device.firmware_version)
     status = device.status()
     yield from board.examine_status(device.hello, status)
     table = read_parameters(device)
-    yield from board.examine_table(table, options.params)
-    yield board.examine_supply(table, options.supply_v)
+    yield from board.examine_table(table, params)
+    yield board.examine_supply(table, supply_v)
     if status.state not in AT_REST:
         yield Finding("potentiometers", Verdict.NOTE, "Not looked at: the motors are on.", "Run `greywhale stop`.")
         return
@@ -67,17 +67,17 @@ def _examine_board(device: Device, options: Options, report: Progress) -> Iterat
     rails = read_pots(device, table).complaints()
     yield from pots.examine_pots(read_counts(device, table, round(REST_S * 1000)), rails)
     yield link.examine_traffic(
-        link.exchange(device, table, options.link_s, lambda fraction: report("link", fraction)), REPLY_WAIT_S
+        link.exchange(device, table, link_s, lambda fraction: report("link", fraction)), REPLY_WAIT_S
     )
 
 
-def _examine_image(options: Options, motors_on: bool, report: Progress) -> list[Finding]:
+def _examine_image(port: str, hex_file: Path | None, motors_on: bool, report: Progress) -> list[Finding]:
     """The firmware on the board against the image, and its memory. The board restarts, so this comes last."""
     if motors_on:
         return [memory.refused()]
     try:
-        compared, boot_code = compare_image(options.port, options.hex_file, report)
-        with Device(options.port):  # its firmware runs again
+        compared, boot_code = compare_image(port, hex_file, report)
+        with Device(port):  # its firmware runs again
             return [memory.examine_boot_code(boot_code), memory.examine_comparison(compared)]
     except UserError as error:
         return [memory.unread(upper_first(error.message))]
