@@ -101,25 +101,21 @@ def _open(port: str, dialect: Dialect) -> Iterator[Talk]:
 
 
 def _enter(line: Talk, dialect: Dialect) -> bool:
-    ask, _ = _DIALECTS[dialect.programmer]
-    if not ask(line):
+    question, answer, _ = _DIALECTS[dialect.programmer]
+    if not line.hear(question, answer):
         return False
     line.forget()
     return True
 
 
 def _try(port: str, dialect: Dialect) -> Bootloader | None:
-    _, read_signature = _DIALECTS[dialect.programmer]
+    *_, read_signature = _DIALECTS[dialect.programmer]
     with _open(port, dialect) as line:
         return Bootloader(dialect, read_signature(line)) if _enter(line, dialect) else None
 
 
 # STK500 version 1, the Nano's: a command and a space; "in sync", the answer, "ok".
 _IN_SYNC, _OK = b"\x14", b"\x10"
-
-
-def _ask_version_1(line: Talk) -> bool:
-    return line.hear(b"0 ", _IN_SYNC + _OK)
 
 
 def _read_signature_1(line: Talk) -> bytes | None:
@@ -140,10 +136,6 @@ _SIGN_ON = b"\x01"
 def _message(sequence: int, body: bytes) -> bytes:
     message = bytes([0x1B, sequence]) + len(body).to_bytes(2, "big") + b"\x0e" + body
     return message + bytes([reduce(xor, message)])
-
-
-def _ask_version_2(line: Talk) -> bool:
-    return line.hear(_message(1, _SIGN_ON), b"\x0e\x01\x00\x08AVRISP_2")
 
 
 def _read_signature_2(line: Talk) -> bytes | None:
@@ -176,4 +168,8 @@ def read_version_2(line: Talk, word: int, count: int) -> bytes | None:
     return answer[2:-1] if answer is not None and whole else None
 
 
-_DIALECTS = {"arduino": (_ask_version_1, _read_signature_1), "wiring": (_ask_version_2, _read_signature_2)}
+# Of each programmer: a question and the answer of whoever listens, and what reads the signature.
+_DIALECTS = {
+    "arduino": (b"0 ", _IN_SYNC + _OK, _read_signature_1),
+    "wiring": (_message(1, _SIGN_ON), b"\x0e\x01\x00\x08AVRISP_2", _read_signature_2),
+}
