@@ -186,21 +186,6 @@ def save(
     their names. `load` gives the same raw values back. `header` are lines of comment on top, `notes` one for each
     joint.
     """
-    text = to_text(rows, source, header=header, notes=notes, travel=travel, tuning=tuning)
-    toml_file.loads(text, Controller, str(path))
-    write_text(path, text)
-
-
-def to_text(
-    rows: Iterable[Iterable[int]],
-    source: str = "",
-    *,
-    header: Sequence[str] = (),
-    notes: Sequence[str] = ("",) * JOINTS,
-    travel: Mapping[str, int] | None = None,
-    tuning: Mapping[str, Any] | None = None,
-) -> str:
-    """The text of a controller file; see `save`."""
     lines = [*(f"# {line}".rstrip() for line in header), f"source = {toml_text.value(source)}"]
     for joint, (row, note) in enumerate(zip(rows, notes, strict=True)):
         values = _in_file(joint, row)
@@ -211,7 +196,9 @@ def to_text(
         lines += ["", "[travel]  # how far a voltage moves each joint", *_travel_lines(travel)]
     if tuning is not None:
         lines += ["", *toml_text.table("tuning", tuning)]
-    return "\n".join(lines) + "\n"
+    text = "\n".join(lines) + "\n"
+    toml_file.loads(text, Controller, str(path))
+    write_text(path, text)
 
 
 def _travel_lines(raw: Mapping[str, int]) -> list[str]:
