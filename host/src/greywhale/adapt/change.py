@@ -30,11 +30,6 @@ REST_SAMPLES, STILL_RAD, CLOSE_RAD = 250, 0.02, 0.12
 LOOK_EVERY = 10
 
 
-def with_quick_start(table: ParameterTable) -> ParameterTable:
-    """The same set, as it runs while sets change."""
-    return table.with_raw({"soft_start_ms": SOFT_START_MS})
-
-
 class RestWatch:
     """Sees every sample, and knows whether leader and follower rest close to each other."""
 

@@ -19,7 +19,7 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
-from enum import Enum
+from enum import StrEnum
 
 import numpy as np
 
@@ -57,7 +57,7 @@ LEAST_GAIN = 0.03
 BELIEVED = 0.7
 
 
-class Outcome(Enum):
+class Outcome(StrEnum):
     KEPT = "kept"
     WORSE = "worse"
     RESTLESS = "restless"

@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal, TypedDict
+from typing import TypedDict
 
-from greywhale.adapt.decide import TriedSet
+from greywhale.adapt.decide import Outcome, TriedSet
 from greywhale.base.types import Crc
 from greywhale.protocol.table import ParameterTable
-
-Ending = Literal["kept", "worse", "restless", "untold"]
 
 
 class TriedFacts(TypedDict):
@@ -20,7 +18,7 @@ class TriedFacts(TypedDict):
     ratio: float | None  # the same as measured; null where it ended too soon
     low: float | None  # where the ratio lies with 98 %
     high: float | None
-    outcome: Ending
+    outcome: Outcome
     why: str
 
 
@@ -96,7 +94,7 @@ class AdaptationResult:
 
 def say(tried: TriedSet) -> str:
     """What came of a trial, in a clause."""
-    if tried.outcome.value == "kept":
+    if tried.outcome is Outcome.KEPT:
         return (
             f"a set was kept: {tried.why} ({100 * (1 - tried.predicted):.0f} % less predicted, {tried.seconds:.0f} s)"
         )
@@ -104,7 +102,6 @@ def say(tried: TriedSet) -> str:
 
 
 def _facts(tried: TriedSet) -> TriedFacts:
-    ending: Ending = tried.outcome.value
     return {
         "parameter_crc": f"0x{tried.crc:04x}",
         "begun_s": round(tried.begun_s, 3),
@@ -113,7 +110,7 @@ def _facts(tried: TriedSet) -> TriedFacts:
         "ratio": _rounded(tried.ratio),
         "low": _rounded(tried.low),
         "high": _rounded(tried.high),
-        "outcome": ending,
+        "outcome": tried.outcome,
         "why": tried.why,
     }
 

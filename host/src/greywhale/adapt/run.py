@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from greywhale.adapt.background import Background, background
-from greywhale.adapt.change import CLOSE_RAD, LEASE_MS, LOOK_EVERY, STILL_RAD, RestWatch, SetChanger, with_quick_start
+from greywhale.adapt.change import CLOSE_RAD, LEASE_MS, LOOK_EVERY, SOFT_START_MS, STILL_RAD, RestWatch, SetChanger
 from greywhale.adapt.decide import Adaptation
 from greywhale.adapt.result import AdaptationResult, say
 from greywhale.adapt.stretch import Collector
@@ -111,7 +111,7 @@ class _Session:
         self.changes = 0
         self._device, self._request, self._start = device, request, start
         self._searches, self._report = searches, report
-        quick = with_quick_start(start)
+        quick = start.with_raw({"soft_start_ms": SOFT_START_MS})  # the same set, as it runs while sets change
         self._core = Adaptation(replace(model, table=quick), quick, budget=request.budget, seed=request.seed)
         self._collector, self._changer = Collector(), SetChanger(device)
         self._rest, self._hunting = RestWatch(), HuntingStop()
