@@ -62,7 +62,8 @@ def listen(port: str, device: str) -> socket.socket:
         if not taken:
             return listener
         listener.close()
-    raise OSError(errno.EADDRINUSE, f"{_takers(device)} has taken all names for it")
+    takers = sorted({f"process {peer.pid} of user {peer.uid}" for peer in _listeners(device)})
+    raise OSError(errno.EADDRINUSE, f"{', '.join(takers) or 'another user'} has taken all names for it")
 
 
 def _take(listener: socket.socket, name: str) -> bool:
@@ -77,25 +78,21 @@ def _take(listener: socket.socket, name: str) -> bool:
     return True
 
 
-def _takers(device: str) -> str:
+def _listeners(device: str) -> Iterator[Peer]:
     """Who listens at a device's names."""
-    takers = set()
     with contextlib.suppress(BlockingIOError):
         for client, peer in _connections(device):
             client.close()
-            takers.add(f"process {peer.pid} of user {peer.uid}")
-    return ", ".join(sorted(takers)) or "another user"
+            yield peer
 
 
 def _refuse_second(port: str, device: str) -> None:
-    with contextlib.suppress(BlockingIOError):
-        for client, peer in _connections(device):
-            client.close()
-            if peer.ours and peer.pid != os.getpid():
-                raise UserError(
-                    f"{port}: the port is in use by another greywhale, {describe(peer.pid)}; wait for its end, or stop "
-                    f"it with `greywhale stop --port {port}`."
-                )
+    for peer in _listeners(device):
+        if peer.ours and peer.pid != os.getpid():
+            raise UserError(
+                f"{port}: the port is in use by another greywhale, {describe(peer.pid)}; wait for its end, or stop "
+                f"it with `greywhale stop --port {port}`."
+            )
 
 
 def find(port: str, patience_s: float) -> tuple[socket.socket, Peer] | None:
