@@ -6,6 +6,7 @@ import shlex
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -59,10 +60,7 @@ def record_motion(
     the board stopped the arm for its unrest; the fault is cleared then.
     """
     length = LEAD_S + load_leader(leader).duration_s + SETTLE_S
-
-    def play(device: Device) -> Recording:
-        return record(device, log, length, enable=True, progress=report)
-
+    play = partial(record, path=log, seconds=length, enable=True, progress=report)
     return record_with(bench, leader, controller, report, play)
 
 

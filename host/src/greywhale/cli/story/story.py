@@ -22,7 +22,7 @@ from greywhale.board.upload import change_parameters
 from greywhale.cli.story import learn
 from greywhale.cli.story.learn import Learnt
 from greywhale.cli.story.practice import PRACTICE_S, REST_FILE, UNTUNED, practise, tables
-from greywhale.cli.story.recorder import Recorded, record_motion
+from greywhale.cli.story.recorder import record_motion
 from greywhale.cli.story.result import DemoResult, Run
 from greywhale.files import controller as controller_file
 from greywhale.files.arm import default_arm, load_arm
@@ -111,7 +111,11 @@ class _Stage:
 
     def follow(self, leader: Path, file: str, name: str, controller: Path | None = None) -> Run:
         """Record the motion that is shown once; without a controller, with those that the board has."""
-        recorded = self._record(leader, file, name, controller)
+
+        def told(what: str, fraction: float) -> None:
+            self._report(f"{name}: {what}", fraction)
+
+        recorded = record_motion(self._bench, leader, self._options.out / f"{file}.csv", controller, told)
         return Run(name, recorded, evaluate(recorded.log()))
 
     def learn(self) -> learn.Learnt:
@@ -141,12 +145,6 @@ class _Stage:
             self._report,
         )
         save_page(outcome, options.out / "commission" / "report.html")
-
-    def _record(self, leader: Path, file: str, name: str, controller: Path | None) -> Recorded:
-        def told(what: str, fraction: float) -> None:
-            self._report(f"{name}: {what}", fraction)
-
-        return record_motion(self._bench, leader, self._options.out / f"{file}.csv", controller, told)
 
     def _tell_board(self) -> ParameterTable:
         """Tell the board the arm's supply and joints, as a person would; return the parameters that it then has."""
