@@ -183,12 +183,14 @@ def _problem(problem: ErrorDetails, model: type[BaseModel]) -> str:
         return f"unknown key {key}; {advice(str(location[-1]), known)}"
     if kind == "missing":
         return f"{key} is missing"
-    if kind in _BOUNDS:
-        bounds = _range(model.model_json_schema(), location)
+    if kind in _BOUNDS:  # pydantic names only the end of the range that was missed
+        here = _at(model.model_json_schema(), location)
+        bounds = " and ".join(f"{words} {here[bound]:g}" for bound, words in _BOUND_WORDS.items() if bound in here)
         return f"{key} is {cut(json.dumps(value))}, but it must be {bounds}"
     if kind in ("too_short", "too_long") and isinstance(value, list):
-        count = _fixed_count(model.model_json_schema(), location)
-        if count is not None:
+        here = _at(model.model_json_schema(), location)
+        count = here.get("minItems")
+        if count is not None and count == here.get("maxItems"):
             what = f"[[{key}]]" if all(isinstance(one, dict) for one in value) else f"values of {key}"
             return f"{len(value)} {what} where there must be exactly {count}"
     message = _lower_first(problem["msg"].removeprefix("Value error, ").removeprefix("Assertion failed, "))
@@ -207,19 +209,6 @@ _BOUND_WORDS = {
     "maximum": "at most",
     "exclusiveMaximum": "less than",
 }
-
-
-def _range(schema: dict[str, Any], location: Sequence[str | int]) -> str:
-    """Both ends of the range of the number at `location`; pydantic names only the end that was missed."""
-    here = _at(schema, location)
-    return " and ".join(f"{words} {here[bound]:g}" for bound, words in _BOUND_WORDS.items() if bound in here)
-
-
-def _fixed_count(schema: dict[str, Any], location: Sequence[str | int]) -> int | None:
-    """How many items the array at `location` must have, if there is only one such number."""
-    here = _at(schema, location)
-    count = here.get("minItems")
-    return count if count is not None and count == here.get("maxItems") else None
 
 
 def _at(schema: dict[str, Any], location: Sequence[str | int]) -> dict[str, Any]:

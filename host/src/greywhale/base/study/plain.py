@@ -24,7 +24,11 @@ def encode(value: Any) -> Any:
         number = float(value)
         return number if math.isfinite(number) else {_FLOAT: str(number)}
     if isinstance(value, np.ndarray):
-        return _encode_array(value)
+        if value.dtype.kind not in "biufc":
+            raise TypeError(f"an array of {value.dtype} is not plain")
+        little = np.ascontiguousarray(value, dtype=value.dtype.newbyteorder("<"))
+        data = base64.b64encode(little.tobytes()).decode()
+        return {_ARRAY: data, "dtype": little.dtype.str, "shape": list(value.shape)}
     if isinstance(value, (list, tuple)):
         return [encode(one) for one in value]
     if isinstance(value, Mapping):
@@ -47,11 +51,3 @@ def decode(value: Any) -> Any:
         data = np.frombuffer(base64.b64decode(value[_ARRAY]), dtype=np.dtype(value["dtype"]))
         return data.reshape(value["shape"]).copy()
     return {key: decode(one) for key, one in value.items()}
-
-
-def _encode_array(value: np.ndarray[Any, Any]) -> dict[str, Any]:
-    if value.dtype.kind not in "biufc":
-        raise TypeError(f"an array of {value.dtype} is not plain")
-    little = np.ascontiguousarray(value, dtype=value.dtype.newbyteorder("<"))
-    shape = list(value.shape)
-    return {_ARRAY: base64.b64encode(little.tobytes()).decode(), "dtype": little.dtype.str, "shape": shape}
