@@ -74,7 +74,6 @@ class AdaptationResult:
         }
 
     def text(self) -> str:
-        """For people."""
         lines = [f"{self.seconds:.0f} s of work, searches: {self.searches}, sets on trial: {len(self.trials)}."]
         lines += [f"  at {one.begun_s:.0f} s: {say(one)}" for one in self.trials]
         if self.note:

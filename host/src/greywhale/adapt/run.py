@@ -120,7 +120,6 @@ class _Session:
         self._kept = self._core.kept  # what the file `out` holds, if it is not the start
 
     def work(self) -> None:
-        """Until the time is over."""
         received = stream(self._device, 1)
         with self._device.enabled(LEASE_MS):
             pause = _Pause(MOST_START_TICKS)

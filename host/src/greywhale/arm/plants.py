@@ -46,7 +46,6 @@ def columns(name: str) -> list[int]:
 
 
 def joint_columns(joint: int) -> list[int]:
-    """The places of all columns of one joint."""
     return [place for place, name in enumerate(PLANT_COLUMNS) if name.startswith(f"joint{joint}.")]
 
 

@@ -299,7 +299,6 @@ class Device:
         return self._sequence
 
     def _receive(self) -> None:
-        """Read what has arrived and sort the frames."""
         data = self._transport.read()
         if not data:
             return

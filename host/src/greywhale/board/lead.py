@@ -128,7 +128,6 @@ class Leading:
 
     @property
     def done(self) -> bool:
-        """Whether all points have been played."""
         return self._made_all and self._taken == len(self._points) and self._points_left(self._last_tick) <= -2
 
     def keep_ahead(self, tick: int, sample: schema.Sample) -> None:

@@ -79,7 +79,6 @@ def _take(listener: socket.socket, name: str) -> bool:
 
 
 def _listeners(device: str) -> Iterator[Peer]:
-    """Who listens at a device's names."""
     with contextlib.suppress(BlockingIOError):
         for client, peer in _connections(device):
             client.close()

@@ -69,7 +69,6 @@ def fault_text(status: schema.StatusReply) -> str:
 
 
 def upper_first(text: str) -> str:
-    """Make a clause begin a sentence."""
     return text[:1].upper() + text[1:]
 
 

@@ -39,7 +39,6 @@ class Failure(TypedDict):
 
 
 def main() -> NoReturn:
-    """Run the command line and exit."""
     try:
         code = run(sys.argv[1:])
     except KeyboardInterrupt:  # before the verb, or after it

@@ -95,7 +95,6 @@ def looks(device: Device, table: ParameterTable) -> Iterator[Look]:
 
 
 def as_table(look: Look) -> str:
-    """A screen of text."""
     lost = f", {look.lost} samples lost" if look.lost else ""
     board = f"{look.port}, state {look.sample.state.key}, {look.sample.tick / 1000:.1f} s since its start{lost}"
     lines = [

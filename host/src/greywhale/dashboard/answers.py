@@ -60,7 +60,6 @@ class ControllerFacts(TypedDict):
 
 
 def arm_facts(arm: ArmParameters) -> ArmFacts:
-    """The arm as the page draws it."""
     joints: list[JointFacts] = [
         {"id": name, "min": joint.stops.min, "max": joint.stops.max, "fixed": joint.fixed}
         for name, joint in zip(JOINT_IDS, arm.joint, strict=True)
@@ -116,7 +115,6 @@ class Answers:
         return samples_of_log(self.folder.inside(file))
 
     def predict(self, asked: dict[str, Any]) -> object:
-        """What the arm would do under a whole parameter table."""
         raw, board, file = asked.get("raw"), asked.get("board"), asked.get("file")
         if not isinstance(raw, list) or len(raw) != len(schema.PARAMETERS) or not all(type(one) is int for one in raw):
             raise BadUsage(f"raw must be {len(schema.PARAMETERS)} whole numbers, a board's parameters.")

@@ -91,7 +91,6 @@ class Jobs:
         return job.facts
 
     def stop(self, id: str) -> Facts:
-        """As Ctrl-C."""
         job = self._find(id)
         job.stop()
         return job.facts

@@ -32,7 +32,6 @@ class Outbox:
             self._notify(False)
 
     def add_answer(self, answer: bytes | Message) -> None:
-        """A frame, or a message in words."""
         with self._lock:
             self._answers.append(answer)
         self._notify(True)

@@ -73,8 +73,6 @@ class _Asked(NamedTuple):
 
 
 class _Open(NamedTuple):
-    """A board that is there."""
-
     line: Line
     port: str
     may_move: Callable[[], None]  # raises where motors must not start
@@ -136,7 +134,6 @@ class Relay:
                 self._tell_link(False, port, sentence)
 
     def heard(self, data: bytes) -> None:
-        """Pass on what the board said."""
         with self._lock:
             for frame, wire in self._decoder.feed_wire(data) if self._board is not None else ():
                 if frame.type == schema.Sample.TYPE:
@@ -320,7 +317,6 @@ class Relay:
             self._board.line.write(data)
 
     def _number(self, asked: _Asked) -> int:
-        """The number of a request that is sent now."""
         assert self._board is not None
         self._sequence = self._sequence % 255 + 1
         self._asked[self._sequence] = asked

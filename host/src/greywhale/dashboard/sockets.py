@@ -49,7 +49,6 @@ class Waiting:
 
 
 async def serve_board(socket: WebSocket, relay: Relay) -> None:
-    """Be a page's board until it goes."""
     await socket.accept(SUBPROTOCOL)
     waiting = Waiting()
     client = Client(Outbox(waiting.notify))

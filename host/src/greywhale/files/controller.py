@@ -34,12 +34,10 @@ _STALL = schema.PARAMETER_BY_NAME["stall_volts"]
 
 
 def _left() -> float:
-    """A corner left of zero."""
     return Field(ge=-1.0, le=-NARROWEST)  # type: ignore[no-any-return]
 
 
 def _right() -> float:
-    """A corner right of zero."""
     return Field(ge=NARROWEST, le=1.0)  # type: ignore[no-any-return]
 
 

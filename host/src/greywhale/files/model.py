@@ -12,7 +12,6 @@ from greywhale.base.formats import toml_text
 
 
 def to_toml(arm: ArmParameters, identification: Mapping[str, Any]) -> str:
-    """The text of a model.toml."""
     head = "Written by greywhale identify. An arm file like any other, with one table more: [identification]."
     return "\n".join([arm_toml(arm, head), *toml_text.table("identification", identification), ""])
 

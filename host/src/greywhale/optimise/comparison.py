@@ -93,11 +93,9 @@ class Comparison:
 
     @property
     def medians(self) -> Floats:
-        """The medians for each function, setting and method."""
         return np.median(self.costs, axis=3)
 
     def of(self, function: str, setting: Setting, method: str) -> Floats:
-        """The costs of all runs of one method on one problem."""
         plan = self.plan
         cell = (plan.functions.index(function), plan.settings.index(setting), plan.methods.index(method))
         costs: Floats = self.costs[cell]

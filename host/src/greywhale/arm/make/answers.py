@@ -31,7 +31,6 @@ def read_answers(path: Path) -> tuple[Answers, tuple[str, ...]]:
 
 
 def answers_toml(given: Sequence[Answer]) -> str:
-    """The text of a file with these answers, for `read_answers`."""
     plain = [(one.question.key, one.value) for one in given if one.question.table is None]
     lines = [f"{key} = {toml_text.value(value)}" for key, value in plain]
     for name in TABLES:

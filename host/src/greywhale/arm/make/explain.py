@@ -34,7 +34,6 @@ MEANT = {
 
 
 def explain(question: Question) -> str:
-    """One line or two."""
     return f"{MEANT[question.key]} {_answers(question)}".rstrip()
 
 

@@ -116,7 +116,6 @@ class CsvFile:
             )
 
     def table(self, block: Block) -> CsvTable:
-        """The rows of a block as text."""
         lines: list[int] = []
         rows: list[list[str]] = []
         for number, line in enumerate(_text(block, self.name).split("\n")[:-1], block.line):
@@ -137,7 +136,6 @@ class CsvFile:
             raise UserError(f"{self.name}: {counted(found, 'row')} of data, but at least {least} are needed.")
 
     def _read_head(self) -> None:
-        """Read the comments and the column names."""
         comments = []
         self._line, self._offset = 1, 0
         while True:

@@ -54,7 +54,6 @@ class Result:
 
     @property
     def changes(self) -> dict[str, int]:
-        """Raw values by parameter name."""
         signs = {
             f"joint{motor.joint}.motor_sign": motor.sign * self.before[f"joint{motor.joint}.motor_sign"]
             for motor in self.motors

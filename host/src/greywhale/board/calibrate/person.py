@@ -22,8 +22,6 @@ LONGEST_TICKS = 600_000
 
 
 class Answer(Enum):
-    """What a person says to a step."""
-
     DONE = "done"
     BACK = "the step before"
     AGAIN = "this step again"

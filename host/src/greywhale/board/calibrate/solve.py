@@ -49,7 +49,6 @@ class Calibration:
 
     @property
     def pots(self) -> tuple[int, ...]:
-        """The potentiometers that there are."""
         return tuple(pot for pot in range(len(POTS)) if pot % JOINTS in self.joints)
 
     def angles(self, counts: Floats) -> Floats:

@@ -36,7 +36,6 @@ def find_avrdude() -> list[str] | None:
 
 
 def need_avrdude() -> list[str]:
-    """avrdude's command; one sentence with the remedy where it is not installed."""
     command = find_avrdude()
     if command is None:
         raise UserError(

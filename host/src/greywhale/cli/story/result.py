@@ -56,8 +56,6 @@ class Answer(TypedDict):
 
 @dataclass(frozen=True)
 class Run:
-    """One recording with one set of controllers."""
-
     name: str
     recorded: Recorded
     measures: Evaluation
@@ -119,7 +117,6 @@ class DemoResult:
         return "\n\n".join(parts)
 
     def _story(self, learnt: Learnt) -> str:
-        """How the tuned controllers came about."""
         fit, *others = learnt.identification.verdicts
         checked = " and ".join(f"{100 * verdict.improvement:.0f} %" for verdict in others)
         lines = [

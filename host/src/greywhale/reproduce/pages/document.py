@@ -76,8 +76,6 @@ class Picture:
 
 @dataclass(frozen=True)
 class Words:
-    """Paragraphs."""
-
     paragraphs: tuple[str, ...]
 
     def as_dict(self) -> dict[str, Any]:

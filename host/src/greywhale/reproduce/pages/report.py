@@ -11,7 +11,6 @@ from greywhale.reproduce.pages.printed import TITLE
 
 
 def document(found: Found) -> Document:
-    """All chapters, with what this run was."""
     request = found.request
     chapters = (
         claims.chapter(found),
