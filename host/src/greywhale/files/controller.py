@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from operator import index
 from pathlib import Path
-from typing import Any, ClassVar, Self
+from typing import Annotated, Any, ClassVar, Self
 
 from pydantic import Field, field_validator, model_validator
 
@@ -30,28 +30,23 @@ NARROWEST = 0.01
 GAINS = ("kp", "kd", "ki", "ku")
 OF_A_JOINT = ("speed_per_volt", "time_constant", "breakaway_volts")
 OF_THE_ARM = ("gravity_1", "gravity_12", "gravity_2")
+# Corners left and right of zero.
+Left = Annotated[float, Field(ge=-1.0, le=-NARROWEST)]
+Right = Annotated[float, Field(ge=NARROWEST, le=1.0)]
 _STALL = schema.PARAMETER_BY_NAME["stall_volts"]
-
-
-def _left() -> float:
-    return Field(ge=-1.0, le=-NARROWEST)  # type: ignore[no-any-return]
-
-
-def _right() -> float:
-    return Field(ge=NARROWEST, le=1.0)  # type: ignore[no-any-return]
 
 
 class Sets(toml_file.Table):
     """The corners of one joint's fuzzy sets; every flank has zero at its other end."""
 
-    Ne_c: float = _left()
-    Ze_a: float = _left()
-    Ze_c: float = _right()
-    Pe_b: float = _right()
-    Nce_c: float = _left()
-    Zce_a: float = _left()
-    Zce_c: float = _right()
-    Pce_b: float = _right()
+    Ne_c: Left
+    Ze_a: Left
+    Ze_c: Right
+    Pe_b: Right
+    Nce_c: Left
+    Zce_a: Left
+    Zce_c: Right
+    Pce_b: Right
 
 
 class JointController(toml_file.Table):
