@@ -71,7 +71,7 @@ class Job:
         self.uses_board = lender is not None or done is not None
         self._done = done
         self._changed = changed
-        self._printed = b""
+        self._printed = bytearray()
         self._rests: dict[str, bytes] = {"progress": b"", "said": b""}
         self._kill_at: float | None = None
         self._wake_out, self._wake_in = socket.socketpair()
@@ -130,7 +130,7 @@ class Job:
         assert self._process.stdout is not None
         assert self._process.stderr is not None
         open_pipes = {
-            self._process.stdout.fileno(): self._take_printed,
+            self._process.stdout.fileno(): self._printed.extend,
             self._process.stderr.fileno(): self._take_said,
             progress: self._take_progress,
         }
@@ -165,9 +165,6 @@ class Job:
         if left_s <= 0.0:
             self._process.kill()
         return max(left_s, 0.1)
-
-    def _take_printed(self, data: bytes) -> None:
-        self._printed += data
 
     def _take_said(self, data: bytes) -> None:
         said = [printable(line) for line in self._lines("said", data)]
