@@ -17,7 +17,7 @@ from greywhale.reproduce.tasks import tasks_of
 Results = dict[str, dict[str, Any]]
 SOURCE = Path(__file__).resolve().parents[1]
 # What only shows: a change of it makes no result old.
-SHOWING = {"cli", "drawing", "pages", "pictures", "render"}
+SHOWING = {"cli", "pages", "pictures", "render"}
 
 
 def run(request: Request, folder: Path, workers: Workers, report: NotedProgress = show_no_progress) -> Results:
