@@ -8,7 +8,6 @@ from __future__ import annotations
 import sys
 import time
 from collections.abc import Callable
-from typing import Any, TypeVar
 
 import click
 
@@ -16,13 +15,7 @@ from greywhale.base.errors import BadUsage
 from greywhale.protocol.ports import is_bench
 
 SECONDS = 3
-Command = TypeVar("Command", bound=Callable[..., Any])
-
-
-def yes_option(command: Command) -> Command:
-    return click.option("--yes", "-y", is_flag=True, help="Move the arm without the countdown; scripts need this.")(
-        command
-    )
+yes_option = click.option("--yes", "-y", is_flag=True, help="Move the arm without the countdown; scripts need this.")
 
 
 def prepare_motion(port: str, yes: bool) -> Callable[[], None]:

@@ -25,6 +25,16 @@ logger = logging.getLogger(__name__)
 watcher: NotedProgress | None = None
 Command = TypeVar("Command", bound=Callable[..., Any])
 FILE = click.Path(path_type=Path)
+# For every verb that writes files; `files.outputs.require_new` takes it.
+overwrite_option = click.option("--overwrite", is_flag=True, help="Write over files that are there already.")
+port_option = click.option(
+    "--port",
+    "-p",
+    envvar="GREYWHALE_PORT",
+    metavar="PORT",
+    shell_complete=completion.ports,
+    help="Serial port of the board; without it, the only board found. [env: GREYWHALE_PORT]",
+)
 
 
 class OnPort(TypedDict):
@@ -55,22 +65,6 @@ def workers_option(*names: str) -> Callable[[Command], Command]:
         type=click.IntRange(1, MOST_WORKERS),
         help="Processes; without it, one for every processor. The result is the same.",
     )
-
-
-def overwrite_option(command: Command) -> Command:
-    """For every verb that writes files; `files.outputs.require_new` takes it."""
-    return click.option("--overwrite", is_flag=True, help="Write over files that are there already.")(command)
-
-
-def port_option(command: Command) -> Command:
-    return click.option(
-        "--port",
-        "-p",
-        envvar="GREYWHALE_PORT",
-        metavar="PORT",
-        shell_complete=completion.ports,
-        help="Serial port of the board; without it, the only board found. [env: GREYWHALE_PORT]",
-    )(command)
 
 
 def show(as_json: bool, result: Mapping[str, object], text: str, hang: int = 0) -> None:
