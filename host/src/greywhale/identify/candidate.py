@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
 from greywhale.base.types import Floats
 from greywhale.identify.closed_loop import LoopResidual
@@ -15,15 +13,6 @@ from greywhale.identify.windows import WindowResidual
 
 # A closed-loop difference of this size counts as one standard deviation (rad): it lasts for many readings.
 LOOP_DOUBT = 1e-2
-
-
-class Observed(Protocol):
-    """A residual that knows the joint of each of its numbers, and how many seconds a candidate costs."""
-
-    joint_of: NDArray[np.intp]
-    seconds: float
-
-    def __call__(self, space: Space, points: Floats) -> Floats: ...
 
 
 @dataclass(frozen=True)

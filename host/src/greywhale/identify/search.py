@@ -22,10 +22,10 @@ import numpy as np
 
 from greywhale.arm import ArmParameters
 from greywhale.base.types import Floats, Progress
-from greywhale.identify.candidate import Candidate, Observed, WindowsAndLoop
+from greywhale.identify.candidate import Candidate, WindowsAndLoop
 from greywhale.identify.closed_loop import Loop, LoopResidual
 from greywhale.identify.data import FINE_STEP_S, Prepared
-from greywhale.identify.fit import Pattern, least_squares_fit
+from greywhale.identify.fit import least_squares_fit
 from greywhale.identify.space import COUPLED, MOTOR, Space
 from greywhale.identify.steps import WindowFit
 from greywhale.identify.windows import WindowResidual
@@ -231,10 +231,10 @@ class Search:
         return self._refine(self._some_windows(), Candidate(space, space.start(), "motors"))
 
     def _fit_friction(self) -> Candidate:
-        """Least squares from several points; the best by the fitted data."""
+        """Least squares from the user's arm and from the fit without friction; the best by the fitted data."""
         space = Space.of(self.arm, (*MOTOR, "coulomb"), self.joints)
         motors = self.tried[0]
-        starts = self._starts(space, motors)
+        starts = [space.start(), space.translate(motors.x, motors.space)]
         residual = self._some_windows()
         # The last fit sees so many times the windows of the others.
         what, parts = "least squares from several starts", len(starts) + max(1, self._fitted.windows // SOME_WINDOWS)
@@ -246,10 +246,6 @@ class Search:
         return self._refine(
             self._fitted, Candidate(space, self._mix_blocks(self._fitted, space, fits), "Coulomb friction")
         )
-
-    def _starts(self, space: Space, motors: Candidate) -> list[Floats]:
-        """Where least squares begins: the user's arm, and the fit without friction."""
-        return [space.start(), space.translate(motors.x, motors.space)]
 
     def _mix_blocks(self, windows: WindowResidual, space: Space, fits: Sequence[Floats]) -> Floats:
         """For each group of joints that feel each other, the numbers of the fit that is best for them: others may be
@@ -300,8 +296,7 @@ class Search:
 
     def _fit_closed(self, windows: WindowResidual, candidate: Candidate, whole: bool) -> Candidate:
         both = WindowsAndLoop(windows, LoopResidual(self._loops_of(candidate), self.joints, whole), candidate)
-        x = self._fit(both, candidate.space, candidate.x, LOOP_STEPS, LOOP_STEP_SCALE)
-        return replace(candidate, x=x, closed=True)
+        return replace(candidate, x=self._fit(both, candidate.space, candidate.x), closed=True)
 
     def _closed_error(self, candidate: Candidate) -> float:
         errors = [loop.error(candidate.plant[None], True)[0, list(self.joints)] for loop in self._loops_of(candidate)]
@@ -357,19 +352,19 @@ class Search:
         self.simulated += fit.simulations * windows.seconds
         return found
 
-    def _fit(self, observed: Observed, space: Space, start: Floats, steps: int, scale: float = 1.0) -> Floats:
+    def _fit(self, observed: WindowsAndLoop, space: Space, start: Floats) -> Floats:
         """Run least squares with the user's arm as one weak observation, and count what was simulated."""
 
-        def residual(space: Space, points: Floats) -> Floats:
+        def residual(points: Floats) -> Floats:
             return np.concatenate([observed(space, points), (points - space.start()) / space.doubts()], axis=1)
 
         own = np.array([one.joint for one in space.parameters], dtype=np.intp)
         moves = space.moves(np.concatenate([observed.joint_of, own]))
         moves[len(observed.joint_of) :] = np.eye(len(space), dtype=bool)
-        found = least_squares_fit(residual, space, start, steps, scale, pattern=Pattern(space.groups(), moves))
-        self.simulations += found.simulations
-        self.simulated += found.simulations * observed.seconds
-        return found.x
+        found, simulations = least_squares_fit(residual, space, start, moves, LOOP_STEPS, LOOP_STEP_SCALE)
+        self.simulations += simulations
+        self.simulated += simulations * observed.seconds
+        return found
 
 
 def _with_values(candidate: Candidate, values: Mapping[str, float]) -> Candidate:

@@ -43,13 +43,6 @@ class Kind:
         return math.exp(number) if self.logarithmic else number
 
 
-def ranges(kinds: Sequence[Kind], start: Floats) -> tuple[Floats, Floats]:
-    """Lowest and highest searched number of each quantity."""
-    low = [at + math.log(kind.low) if kind.logarithmic else kind.low for kind, at in zip(kinds, start, strict=True)]
-    high = [at + math.log(kind.high) if kind.logarithmic else kind.high for kind, at in zip(kinds, start, strict=True)]
-    return np.array(low), np.array(high)
-
-
 # Friction at rest and load friction end at a half. Voltages alone are explained as well by more, but such a
 # joint sticks in a closed loop where the real one moves (docs/real_data.md).
 KINDS = {
@@ -148,7 +141,13 @@ class Space:
         return np.array([self.kind(n).to_search(self._known(one)) for n, one in enumerate(self.parameters)])
 
     def bounds(self) -> tuple[Floats, Floats]:
-        return ranges([self.kind(index) for index in range(len(self))], self.start())
+        """Lowest and highest searched number of each quantity."""
+        pairs = [
+            (at + math.log(kind.low), at + math.log(kind.high)) if kind.logarithmic else (kind.low, kind.high)
+            for at, kind in zip(self.start(), map(self.kind, range(len(self))), strict=True)
+        ]
+        low, high = np.array(pairs).reshape(-1, 2).T
+        return low, high
 
     def values(self, x: Floats) -> Floats:
         """The values in physical units."""
