@@ -111,7 +111,7 @@ def test_what_is_not_installed_points_one_way(folder: str, forbidden: str) -> No
     [
         ("_native.ClosedLoop", "greywhale/simulate/closed_loop.py"),
         ("_native.leader_readings", "greywhale/simulate/closed_loop.py"),
-        ("_native.simulate_ideal", "greywhale/simulate/ideal.py"),
+        ("_native.simulate_ideal", "greywhale/tune/judge/floor.py"),
         ("_native.simulate_windows", "greywhale/identify/windows.py"),
         ("_native.plant_row", "greywhale/arm/plants.py"),
         ("PARAMETERS[", "greywhale/board/upload.py greywhale/board/refusal.py"),

@@ -29,6 +29,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from greywhale import _native
 from greywhale.arm import ArmParameters
 from greywhale.arm.plants import check_plants, column, rigid_joints
 from greywhale.base.errors import BadUsage
@@ -37,7 +38,6 @@ from greywhale.files.trajectory import Trajectory
 from greywhale.motion.runs import resting
 from greywhale.protocol.firmware import JOINTS
 from greywhale.simulate import leader_slices, plant_row
-from greywhale.simulate.ideal import simulate_ideal
 from greywhale.simulate.leader import SLICE_S, SLICES_PER_TICK
 
 # A floor below this (rad^2) may be mere backlash (some mrad), unless the bound says that it is the supply; one below a
@@ -177,7 +177,8 @@ class _Loop:
     def _simulate(
         self, plant: Floats, tunings: Floats, chased: int, direction: NDArray[np.int8], until: Floats, keep: bool
     ) -> tuple[Floats, Floats]:
-        mse, angles = simulate_ideal(
+        """The joint `chased` (-1: none) runs at full voltage in `direction` (slices,) as far as `until` (rad)."""
+        mse, angles = _native.simulate_ideal(
             leader=self.slices,
             late=self.late,
             plant=plant,
