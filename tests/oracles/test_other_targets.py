@@ -189,7 +189,7 @@ def test_identification_windows(calls: Calls, driver: Driver, tmp_path: Path) ->
 
 
 def test_ideal_law(calls: Calls, driver: Driver, tmp_path: Path) -> None:
-    slices = leader_slices(human_reaches(4, 2.0), 0.5, 0.0, False)
+    slices = leader_slices(human_reaches(4, 2.0), 0.5)
     tunings = np.tile([1.1, 0.02, 1.0, 1.0], (3, 4, 1)) * np.array([1.0, 1.1, 1.2])[:, None, None]
     direction = np.where(np.arange(len(slices)) % 4000 < 1500, 1, 0).astype(np.int8)
     for arm in ("default", "white_box", "worn"):

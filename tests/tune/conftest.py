@@ -25,7 +25,7 @@ def outcome(tmp_path: Path) -> TuningResult:
     after[2, 8] += 1
     motion, rows = Trajectory(np.array([0.0, 1.0]), np.zeros((2, 4))), np.zeros((1, 4))
     floors = [
-        Floor(np.full(4, mse), np.full(4, bound), 15.0, 0.0, rows[:, 0], rows, rows)
+        Floor(np.full(4, mse), np.full(4, bound), rows[:, 0], rows, rows)
         for mse, bound in ((0.002, 0.002), (1e-7, 6e-8))
     ]
     held = [

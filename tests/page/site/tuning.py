@@ -20,7 +20,7 @@ from tools.site.tuner_data import SEED, straight_slices
 PACK, BUDGET = 4, 40  # every stage has more than its first pack where it can
 
 
-def straight(motion: Trajectory, wait_s: float, after_s: float = 0.0, resample: bool = False) -> Floats:
+def straight(motion: Trajectory, wait_s: float, resample: bool = False) -> Floats:
     return straight_slices(motion, wait_s)
 
 

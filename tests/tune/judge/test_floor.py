@@ -20,7 +20,7 @@ TORQUE, INERTIA, SUPPLY = 0.5, 0.05, 10.0
 FASTEST = TORQUE * SUPPLY / INERTIA  # rad/s^2
 
 
-def double_integrators() -> Floats:
+def double_integrators(supply: float = SUPPLY) -> Floats:
     """A plant row of four joints that are nothing but inertia: motors so heavy that their links do not matter."""
     row = plant_row(load_arm("grey_box"))
     for index, place in enumerate(PLANT_COLUMNS):
@@ -31,7 +31,7 @@ def double_integrators() -> Floats:
             row[index] = {"torque_per_volt": TORQUE, "inertia": INERTIA}[name]
         elif "." not in place:
             row[index] = 1e-9
-    row[column("supply")] = SUPPLY
+    row[column("supply")] = supply
     return row
 
 
@@ -65,8 +65,7 @@ def test_a_jump_of_pure_inertia_costs_what_fuller_found_and_the_bound_what_it_co
 
 
 def test_a_lower_voltage_costs_what_it_must() -> None:
-    full, quarter = (saturation_floor(jump(0.5), double_integrators(), supply_v=volts) for volts in (99.0, SUPPLY / 4))
-    assert full.supply_v == SUPPLY
+    full, quarter = (saturation_floor(jump(0.5), double_integrators(volts)) for volts in (SUPPLY, SUPPLY / 4))
     np.testing.assert_allclose(quarter.mse / full.mse, 2.0, rtol=0.01)
     np.testing.assert_allclose(quarter.bound / full.bound, 2.0, rtol=0.01)
 
@@ -82,8 +81,8 @@ def test_steps_leave_little_between_floor_and_bound_on_every_arm(name: str) -> N
 
 def test_the_floor_is_of_the_experiments_own_window_and_below_its_controller() -> None:
     motion, arm = multi_steps([0.0, 0.8, -0.4], [0.6, 1.0, 1.0]), default_arm()
-    experiment = Experiment(motion, arm, wait_s=0.7, after_s=0.3)
-    floor = saturation_floor(motion, arm, wait_s=0.7, after_s=0.3)
+    experiment = Experiment(motion, arm, wait_s=0.7)
+    floor = saturation_floor(motion, arm, wait_s=0.7)
     np.testing.assert_array_equal(floor.leader, experiment.leader)
     np.testing.assert_allclose(floor.time_s, experiment.time_s, atol=1e-12)
     np.testing.assert_allclose(floor.mse, np.mean((floor.leader - floor.angles) ** 2, axis=0), rtol=1e-12)
@@ -122,15 +121,11 @@ def test_knowing_the_leader_later_costs_more() -> None:
     assert np.all(late.bound > now.bound)
     # Every millisecond of a jump of 1 rad costs 1 rad^2 x 1 ms.
     np.testing.assert_allclose((late.mse - now.mse) * 1.5, 0.004, rtol=0.25)
-    assert "4 ms late" in late.how
-    assert "late" not in now.how
 
 
 @pytest.mark.parametrize(
     ("change", "complaint"),
     [
-        ({"supply_v": 0.0}, "supply_v is 0, but it must be a voltage above 0 V"),
-        ({"supply_v": float("nan")}, "supply_v is nan"),
         ({"delay_s": -0.1}, "delay_s is -0.1, but it must lie within 0..1 s"),
         ({"arm": np.repeat(double_integrators()[None], 2, axis=0)}, "of one plant, not of 2"),
         ({"motion": jump(1.0) + 2.6}, "the leader starts with joint 0 at 2.6 rad, beyond the follower's stops"),

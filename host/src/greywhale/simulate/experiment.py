@@ -41,7 +41,6 @@ class Experiment:
         noise: bool = True,
         seed: int = 1,
         wait_s: float = 1.5,
-        after_s: float = 0.0,
         resample: bool = False,
         soft_start: bool = True,
         weight_s: Floats | None = None,
@@ -51,7 +50,7 @@ class Experiment:
         self.arm = arm
         self.table = ParameterTable.defaults() if table is None else table
         if isinstance(leader, Trajectory):
-            slices = leader_slices(leader, wait_s, after_s, resample)
+            slices = leader_slices(leader, wait_s, resample)
         else:
             slices = _check_slices(leader).copy()
         slices[:, unused(arm.joints_in_use)] = 0.0

@@ -13,16 +13,15 @@ SLICES_PER_TICK = 4
 UNEVEN = 0.05  # a row may be early or late by this share of the usual spacing
 
 
-def leader_slices(motion: Trajectory, wait_s: float, after_s: float = 0.0, resample: bool = False) -> Floats:
-    """Leader angles (rad) in every slice of 250 us: first pose for `wait_s`, the motion, last pose for `after_s`.
+def leader_slices(motion: Trajectory, wait_s: float, resample: bool = False) -> Floats:
+    """Leader angles (rad) in every slice of 250 us: first pose for `wait_s`, then the motion.
 
     Between the rows of an even recording runs its monotone cubic (greywhale.motion). A recording with gaps or
     uneven times is refused, unless `resample` allows the same cubic to bridge them too.
     """
     if not resample:
         _require_even(motion)
-    total_s = wait_s + motion.duration_s + after_s
-    ticks = int(np.ceil(total_s / (SLICES_PER_TICK * SLICE_S) - 1e-9))
+    ticks = int(np.ceil((wait_s + motion.duration_s) / (SLICES_PER_TICK * SLICE_S) - 1e-9))
     times = np.arange(ticks * SLICES_PER_TICK, dtype=np.float64) * SLICE_S - wait_s
     return np.ascontiguousarray(motion.at(times))
 

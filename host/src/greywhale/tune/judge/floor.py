@@ -62,8 +62,6 @@ class Floor:
 
     mse: Floats  # (4,) rad^2
     bound: Floats  # (4,) rad^2
-    supply_v: float
-    delay_s: float
     time_s: Floats = field(repr=False)  # (ticks,)
     leader: Floats = field(repr=False)  # (ticks, 4) rad
     angles: Floats = field(repr=False)  # (ticks, 4) rad
@@ -71,15 +69,6 @@ class Floor:
     @property
     def total(self) -> float:
         return float(self.mse.sum())
-
-    @property
-    def how(self) -> str:
-        """One sentence for reports."""
-        late = f", told of the leader {1000 * self.delay_s:g} ms late" if self.delay_s else ""
-        return (
-            f"floor: MSE of an ideal causal controller at {self.supply_v:g} V that knows arm and state exactly{late}; "
-            f"no controller that waits for the leader gets below {self.bound.sum():.3g} rad² in total."
-        )
 
     @property
     def limited(self) -> tuple[bool, ...]:
@@ -97,24 +86,22 @@ def saturation_floor(
     motion: Trajectory | Floats,
     arm: ArmParameters | Floats,
     *,
-    supply_v: float | None = None,
     delay_s: float = 0.0,
     wait_s: float = 1.5,
-    after_s: float = 0.0,
     resample: bool = False,
     threads: int = 0,
 ) -> Floor:
     """The floor of a motion (or angles in every slice of 250 us) on an arm or a plant row (columns,).
 
-    `supply_v` sets a lower voltage, for instance a controller's Ku. `delay_s` says how late the controller learns where
-    the leader is; it separates the cost of sensing from the cost of the supply. The rest is as in Experiment.
+    `delay_s` says how late the controller learns where the leader is; it separates the cost of sensing from the cost of
+    the supply. The rest is as in Experiment.
     """
-    loop = _loop_of(motion, arm, supply_v, delay_s, wait_s, after_s, resample, threads)
+    loop = _loop_of(motion, arm, delay_s, wait_s, resample, threads)
     tunings = _best(loop)
     mse, angles = loop.run(tunings[None], keep=True)
     bound = np.array([_bound(loop, joint, tunings) for joint in range(JOINTS)])
     time_s: Floats = np.arange(len(loop.leader), dtype=np.float64) * SLICE_S * SLICES_PER_TICK
-    return Floor(mse[0], bound, loop.supply, delay_s, time_s, loop.leader, angles[0])
+    return Floor(mse[0], bound, time_s, loop.leader, angles[0])
 
 
 def follow_ideally(
@@ -124,7 +111,7 @@ def follow_ideally(
 
     The law's open numbers are those of the first plant.
     """
-    loops = [_loop_of(motion, plant, None, delay_s, wait_s, 0.0, False, threads) for plant in plants]
+    loops = [_loop_of(motion, plant, delay_s, wait_s, False, threads) for plant in plants]
     tunings = _best(loops[0])[None]
     return loops[0].leader, np.stack([loop.run(tunings, keep=True)[1][0] for loop in loops])
 
@@ -132,19 +119,17 @@ def follow_ideally(
 def _loop_of(
     motion: Trajectory | Floats,
     arm: ArmParameters | Floats,
-    supply_v: float | None,
     delay_s: float,
     wait_s: float,
-    after_s: float,
     resample: bool,
     threads: int,
 ) -> _Loop:
     plant = check_plants(arm if isinstance(arm, np.ndarray) else plant_row(arm))
     if len(plant) != 1:
         raise BadUsage(f"the floor is of one plant, not of {len(plant)}; call it for each.")
-    slices = leader_slices(motion, wait_s, after_s, resample) if isinstance(motion, Trajectory) else _checked(motion)
+    slices = leader_slices(motion, wait_s, resample) if isinstance(motion, Trajectory) else _checked(motion)
     slices = np.where(rigid_joints(plant[0]), 0.0, slices)  # what is not in use is not led
-    loop = _Loop(slices, plant[0], _supply(plant[0], supply_v), _delay_slices(delay_s), threads)
+    loop = _Loop(slices, plant[0], _delay_slices(delay_s), threads)
     _require_reach(loop)
     return loop
 
@@ -155,7 +140,6 @@ class _Loop:
 
     slices: Floats  # (slices, 4) rad
     plant: Floats
-    supply: float  # V
     late: int  # slices
     threads: int
 
@@ -182,7 +166,7 @@ class _Loop:
             leader=self.slices,
             late=self.late,
             plant=plant,
-            supply=self.supply,
+            supply=float(plant[column("supply")]),
             tunings=tunings,
             chased=chased,
             direction=direction,
@@ -277,15 +261,6 @@ def _checked(slices: Floats) -> Floats:
     if not np.isfinite(slices).all():
         raise BadUsage("the leader holds an angle that is not a finite number.")
     return np.ascontiguousarray(slices, dtype=np.float64)
-
-
-def _supply(plant: Floats, supply_v: float | None) -> float:
-    full = float(plant[column("supply")])
-    if supply_v is None:
-        return full
-    if not 0.0 < supply_v < np.inf:
-        raise BadUsage(f"supply_v is {supply_v:g}, but it must be a voltage above 0 V.")
-    return min(supply_v, full)
 
 
 def _delay_slices(delay_s: float) -> int:
