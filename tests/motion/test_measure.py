@@ -14,7 +14,7 @@ from greywhale.base.errors import UserError
 from greywhale.base.types import Floats
 from greywhale.files.log import Log
 from greywhale.files.log.layout import Origin
-from greywhale.motion import Settings, evaluate
+from greywhale.motion import evaluate
 from greywhale.motion.delay import correlations
 from greywhale.motion.runs import gap_free_runs, last_part
 
@@ -146,7 +146,6 @@ def test_tremor_within_the_band_is_rest_and_beyond_it_is_not() -> None:
     assert quiet.joints[0].steady_state_error == pytest.approx(0.03, rel=1e-3)
     assert quiet.rests_s[0] == pytest.approx(4.5, abs=0.01)
     assert evaluate(log(time, 0.011 * tremor, 0 * time)).joints[0].steady_state_error is None
-    assert evaluate(log(time, 0.011 * tremor, 0 * time), Settings(rest_band=0.03)).joints[0].steady_state_error
 
 
 def test_only_samples_in_following_count() -> None:

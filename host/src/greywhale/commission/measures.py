@@ -18,8 +18,7 @@ import numpy as np
 from greywhale.base.types import Floats, PerJoint
 from greywhale.commission.motions import PARTS, Check
 from greywhale.files.log import Log
-from greywhale.motion import Settings
-from greywhale.motion.runs import resting
+from greywhale.motion.runs import REST_RAD, REST_S, resting
 from greywhale.motion.step_response import answer, departures, worst
 from greywhale.motion.swings import (
     REST_AFTER_S,
@@ -151,11 +150,10 @@ def still_error(leader: Floats, follower: Floats) -> Floats:
 
 def step_answers(leader: Floats, follower: Floats) -> tuple[Floats, Floats]:
     """The largest overshoot (%) and the longest settling time (s) of each joint's steps, (4,) each."""
-    settings, found = Settings(), np.full((2, JOINTS), np.nan)
+    found = np.full((2, JOINTS), np.nan)
     for joint, (led, followed) in enumerate(zip(leader.T, follower.T, strict=True)):
-        rest = resting(led, round(settings.rest_s / TICK_S), settings.rest_band)
-        steps = departures(led, rest, TICK_S, settings)
-        answers = [answer(led, followed, rest, step, TICK_S, settings) for step in steps]
+        rest = resting(led, round(REST_S / TICK_S), REST_RAD)
+        answers = [answer(led, followed, rest, step, TICK_S) for step in departures(led, rest, TICK_S)]
         found[:, joint] = [np.nan if one is None else one for one in worst([one for one in answers if one is not None])]
     return found[0], found[1]
 

@@ -13,7 +13,7 @@ import scipy  # loads a part of itself when it is first used
 from numpy.typing import NDArray
 
 from greywhale.base.types import Floats
-from greywhale.motion.step_response import Departure
+from greywhale.motion.step_response import ONSET_RAD, Departure
 
 # A joint that moves less than this (rad) shows noise rather than a delay.
 _SMALLEST_MOTION = 0.05
@@ -21,6 +21,7 @@ _SMALLEST_MOTION = 0.05
 _LOWEST_CORRELATION = 0.5
 # Lags below zero are searched this far (s), only to tell a peak at zero from the edge of the search.
 _BEFORE_ZERO_S = 0.1
+_LONGEST_S = 1.0
 # Overlaps that vary less than this share of the whole show no likeness.
 _STILL = 1e-9
 # Samples that are transformed at once, so that a log of an hour needs little memory.
@@ -29,12 +30,12 @@ _PIECE = 1 << 16
 _SHORTEST_OVERLAP_S = 1.0
 
 
-def correlation_delay(leader: Floats, follower: Floats, period: float, longest_s: float) -> float | None:
+def correlation_delay(leader: Floats, follower: Floats, period: float) -> float | None:
     """Delay in s, or None: recording too short, motion too small, signals too different, no peak within the search."""
     if np.ptp(leader) < _SMALLEST_MOTION or np.ptp(follower) < _SMALLEST_MOTION:
         return None
     first = -max(2, round(_BEFORE_ZERO_S / period))
-    last = max(2, round(longest_s / period))
+    last = max(2, round(_LONGEST_S / period))
     if (len(leader) - last) * period < _SHORTEST_OVERLAP_S:
         return None
     likeness = correlations(leader, follower, first, last)
@@ -87,17 +88,17 @@ def _products(a: Floats, b: Floats, first: int, last: int) -> Floats:
     return sums
 
 
-def onset_delay(leader: Floats, follower: Floats, step: Departure, rest_samples: int, band: float) -> float | None:
+def onset_delay(leader: Floats, follower: Floats, step: Departure, rest_samples: int) -> float | None:
     """The paper's time delay of a step that the leader makes out of a rest, in samples; None where nothing answers.
 
-    An onset is the first time an angle is further than `band` from where it rested, in the direction of the step; it
+    An onset is the first time an angle is further than ONSET_RAD from where it rested, in the direction of the step; it
     lies between two samples, and is interpolated. The follower's onset is looked for until the leader's next rest has
     ended.
     """
     # The follower may still be settling when the leader leaves, so its place of rest is its last place.
     moved = leader[step.end : step.limit] - step.begin
     answered = follower[step.end : step.limit] - np.median(follower[step.end - rest_samples // 10 : step.end + 1])
-    command, answer = (_crossing(step.side * angles, band) for angles in (moved, answered))
+    command, answer = (_crossing(step.side * angles, ONSET_RAD) for angles in (moved, answered))
     return None if command is None or answer is None else answer - command
 
 

@@ -3,10 +3,10 @@
 - Input tracking: mean of (leader - follower)^2 over the measured samples; the total is the sum over the joints, as in
   equation 5 and table 11.
 - Steady-state error: "the difference between the desired final position and the actual position in steady state".
-  Here the mean of |leader - follower| over the last `rest_s` of each rest, and no sooner than `rest_s` after the
-  leader came to rest, which is when it has stayed within `rest_band` for so long. The rest with which a log begins
+  Here the mean of |leader - follower| over the last REST_S of each rest, and no sooner than REST_S after the leader
+  came to rest, which is when it has stayed within REST_RAD for so long. The rest with which a log begins
   follows no move, so it counts only where there is no other. None where the leader never rests.
-- Settling error: the same mean over all samples from `rest_s` after the leader came to rest. A slow follower is then
+- Settling error: the same mean over all samples from REST_S after the leader came to rest. A slow follower is then
   still on its way; so it tells how soon and how well the follower gets there, and the steady-state error where it ends.
 - Time delay: two definitions, see `delay.py`. `delay_s` is the lag at which the follower resembles the leader most,
   defined for any motion; `onset_delay_s` is the paper's, "the difference between the times that the leader gives a
@@ -33,12 +33,14 @@ from greywhale.base.types import Floats, PerJoint
 from greywhale.files.log import Log
 from greywhale.motion.delay import correlation_delay, onset_delay
 from greywhale.motion.following import follows
-from greywhale.motion.runs import Run, first_part, gap_free_runs, last_part, resting
-from greywhale.motion.settings import Settings
+from greywhale.motion.runs import REST_RAD, REST_S, Run, first_part, gap_free_runs, last_part, resting
 from greywhale.motion.step_response import Answer, answer, departures, worst
 from greywhale.motion.swings import RIPPLE_S, ripple_of_record
 from greywhale.protocol.firmware import TICK_S
 from greywhale.protocol.joints import ALL, Joints
+
+# More overshoot than this, in per cent of the step, is no chance.
+MORE_PERCENT = 5.0
 
 
 class JointFacts(TypedDict):
@@ -137,9 +139,8 @@ class Evaluation:
         }
 
 
-def evaluate(log: Log, settings: Settings | None = None) -> Evaluation:
+def evaluate(log: Log) -> Evaluation:
     """Measure every joint of a log."""
-    chosen = settings or Settings()
     following = log.state == "following"
     measured = following if following.any() else np.ones(len(log.time), dtype=bool)
     runs = gap_free_runs(log.time, measured)
@@ -152,7 +153,7 @@ def evaluate(log: Log, settings: Settings | None = None) -> Evaluation:
     with threadpool_limits(limits=1, user_api="blas"):
         for joint in range(log.leader.shape[1]):
             columns = log.leader[:, joint], log.follower[:, joint], log.voltage[:, joint]
-            measures, rested = _joint(*columns, measured, runs, chosen)
+            measures, rested = _joint(*columns, measured, runs)
             joints.append(measures)
             rests.append(rested)
     return Evaluation(
@@ -183,32 +184,29 @@ def _joint(
     voltage: Floats,
     measured: NDArray[np.bool_],
     runs: list[Run],
-    settings: Settings,
 ) -> tuple[JointMeasures, float]:
     error = leader - follower
     at_rest, at_end, at_begin = np.zeros((3, len(leader)), dtype=bool)
     onsets: list[float] = []
     answers: list[Answer] = []
     for run in runs:
-        led, followed, window = leader[run.slice], follower[run.slice], run.samples(settings.rest_s)
-        rest = resting(led, window, settings.rest_band)
+        led, followed, window = leader[run.slice], follower[run.slice], run.samples(REST_S)
+        rest = resting(led, window, REST_RAD)
         at_rest[run.slice] = rest
         at_end[run.slice] = last_part(rest, window)
         if run is runs[0]:
             at_begin[run.slice] = first_part(rest, window)
-        for step in departures(led, rest, run.period, settings):
-            onset = onset_delay(led, followed, step, window, settings.onset_band)
+        for step in departures(led, rest, run.period):
+            onset = onset_delay(led, followed, step, window)
             onsets += [] if onset is None else [onset * run.period]
-            found = answer(led, followed, rest, step, run.period, settings)
+            found = answer(led, followed, rest, step, run.period)
             answers += [] if found is None else [found]
     longest = max(runs, key=lambda run: run.stop - run.start)
     overshoot, settling = worst(answers)
     measures = JointMeasures(
         mse=float(np.mean(error[measured] ** 2)),
         steady_state_error=_mean_error(error[final if (final := at_end & ~at_begin).any() else at_end]),
-        delay_s=correlation_delay(
-            leader[longest.slice], follower[longest.slice], longest.period, settings.longest_delay_s
-        ),
+        delay_s=correlation_delay(leader[longest.slice], follower[longest.slice], longest.period),
         onset_delay_s=float(np.mean(onsets)) if onsets else None,
         steps=len(onsets),
         follows=follows(leader[measured], follower[measured], longest.period),
@@ -219,3 +217,13 @@ def _joint(
         settling_error=_mean_error(error[at_rest]),
     )
     return measures, float(np.count_nonzero(at_rest) * longest.period)
+
+
+def more_overshoot(before: Evaluation, after: Evaluation) -> str:
+    """The joints in use that overshoot clearly more than before, such as "joint 2 from 4 to 31 %"; "" for none."""
+    said = []
+    for joint in before.joints_in_use:
+        was, now = before.joints[joint].overshoot_percent, after.joints[joint].overshoot_percent
+        if was is not None and now is not None and now > was + MORE_PERCENT:
+            said.append(f"joint {joint} from {was:.0f} to {now:.0f} %")
+    return ", ".join(said)

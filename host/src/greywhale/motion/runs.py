@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 
 # A step of time longer than this many periods is a gap: samples were lost.
 _GAP = 1.5
+# A leader rests that has stayed within the band (rad) for so long (s).
+REST_S, REST_RAD = 0.5, 0.02
 
 
 @dataclass(frozen=True)

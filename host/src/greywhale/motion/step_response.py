@@ -1,10 +1,10 @@
 """Steps of the leader out of a rest, and how the follower answers them: overshoot and settling time.
 
-- A step begins where a rest of the leader ends and the leader then gets further than `step_size` within `step_s`, to
-  one side. It counts here if the leader rests again, at least `step_size` away from where it was.
+- A step begins where a rest of the leader ends and the leader then gets further than STEP_RAD within STEP_S, to one
+  side. It counts here if the leader rests again, at least STEP_RAD away from where it was.
 - Overshoot: how far the follower gets beyond the leader's new place, in per cent of the step.
 - Settling time: from when the leader is in the band around its new place for good until the follower is, until the
-  leader's next departure. The band is 5 % of the step to either side, but at least `rest_band`. A leader that jumps
+  leader's next departure. The band is 5 % of the step to either side, but at least REST_RAD. A leader that jumps
   is there at once, so that this is the usual time since the step. A hand's own way is not counted.
 
 Angles are smoothed over 20 ms, so that single noisy samples are no overshoot.
@@ -21,10 +21,12 @@ import scipy  # loads a part of itself when it is first used
 from numpy.typing import NDArray
 
 from greywhale.base.types import Floats
-from greywhale.motion.settings import Settings
+from greywhale.motion.runs import REST_RAD, REST_S
 
 Bools = NDArray[np.bool_]
 
+ONSET_RAD = 0.05
+STEP_RAD, STEP_S = 0.15, 0.5
 SETTLED_SHARE = 0.05
 SMOOTH_S = 0.02
 
@@ -47,38 +49,36 @@ class Answer:
     settling_s: float | None
 
 
-def departures(leader: Floats, rest: Bools, period: float, settings: Settings) -> Iterator[Departure]:
+def departures(leader: Floats, rest: Bools, period: float) -> Iterator[Departure]:
     """Every step of the leader out of a rest."""
-    rested, within = (math.ceil(seconds / period - 1e-9) for seconds in (settings.rest_s, settings.step_s))
+    rested, within = (math.ceil(seconds / period - 1e-9) for seconds in (REST_S, STEP_S))
     ends = np.flatnonzero(rest[:-1] & ~rest[1:])
     for index, end in enumerate(ends):
         limit = int(ends[index + 1]) + 1 if index + 1 < len(ends) else len(leader)
         begin = float(np.median(leader[end - rested : end + 1]))
         moved = leader[end:limit] - begin
-        away = np.flatnonzero(np.abs(moved) > settings.onset_band)
+        away = np.flatnonzero(np.abs(moved) > ONSET_RAD)
         if not away.size:
             continue
         side = float(np.sign(moved[away[0]]))
-        if (side * moved[away[0] : away[0] + within]).max() >= settings.step_size:
+        if (side * moved[away[0] : away[0] + within]).max() >= STEP_RAD:
             yield Departure(int(end), limit, begin, side)
 
 
-def answer(
-    leader: Floats, follower: Floats, rest: Bools, step: Departure, period: float, settings: Settings
-) -> Answer | None:
+def answer(leader: Floats, follower: Floats, rest: Bools, step: Departure, period: float) -> Answer | None:
     """The follower's answer to a step, or None where the leader does not rest again, or too near to where it was."""
     arrived = np.flatnonzero(rest[step.end + 1 : step.limit])
     if not arrived.size:
         return None
     place = float(np.median(leader[step.end + 1 + int(arrived[0]) : step.limit]))
     moved = step.side * (place - step.begin)
-    if moved < settings.step_size:
+    if moved < STEP_RAD:
         return None
     here, size = slice(step.end, step.limit), max(1, round(SMOOTH_S / period))
     led, followed = (
         scipy.ndimage.uniform_filter1d(angles[here], size, mode="nearest") for angles in (leader, follower)
     )
-    band = max(SETTLED_SHARE * moved, settings.rest_band)
+    band = max(SETTLED_SHARE * moved, REST_RAD)
     there, settled = (_last(np.abs(angles - place) > band) for angles in (led, followed))
     # At the end of its rest the leader already moves on, perhaps to the same side.
     beyond = np.minimum(step.side * (followed - place), step.side * (followed - led))
