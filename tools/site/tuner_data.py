@@ -15,6 +15,7 @@ from greywhale.base.types import Floats
 from greywhale.files.trajectory import Trajectory
 from greywhale.fuzzy.settings import LEAST_WIDTH, SET_UNIT
 from greywhale.motion import swings
+from greywhale.motion.runs import stretches
 from greywhale.optimise import relative
 from greywhale.optimise.optimiser import PACK
 from greywhale.protocol.firmware import JOINTS, pwm_steps
@@ -105,7 +106,6 @@ def _drills(model: Model) -> list[dict[str, Any]]:
     told = []
     for number, (drill, floor) in enumerate(zip(motions, floors, strict=True)):
         _, moving = training.moving_ticks(drill.motion, training.WAIT_S)
-        edges = np.flatnonzero(np.diff(np.concatenate(([False], moving, [False])).astype(np.int8)))
         told.append(
             {
                 "name": drill.name,
@@ -113,7 +113,7 @@ def _drills(model: Model) -> list[dict[str, Any]]:
                 "searching": _noise(training.noise_seed(SEED, number)),
                 "judging": _noise(training.noise_seed(SEED + default.JUDGING_SEED, number)),
                 # None where all ticks weigh the same.
-                "moving": None if drill.name == training.SLOW else edges.reshape(-1, 2).tolist(),
+                "moving": None if drill.name == training.SLOW else stretches(moving),
                 "total_weight": drill.total_weight,
                 "importance": drill.importance,
                 "floor": floor.tolist(),

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from greywhale.arm import ArmParameters
 from greywhale.base.errors import UserError
 from greywhale.base.types import Floats
-from greywhale.identify.data import Prepared
+from greywhale.identify.data import Prepared, rows_in
 from greywhale.protocol.firmware import JOINTS
 from greywhale.protocol.table import ParameterTable
 
@@ -27,7 +27,7 @@ FITTING = 0.7
 def check(prepared: Prepared, arm: ArmParameters, table: ParameterTable | None) -> list[str]:
     """Refuse a log that cannot be used; doubts that do not forbid it come back as sentences."""
     log = prepared.log
-    used = _used(prepared)
+    used = rows_in(prepared.runs, len(log.time))
     seconds = sum(run.period * (run.stop - run.start - 1) for run in prepared.runs)
     if seconds < SHORTEST_S:
         raise UserError(
@@ -49,13 +49,6 @@ def check(prepared: Prepared, arm: ArmParameters, table: ParameterTable | None) 
         doubts += _supply(where, voltage[:, joint], arm)
     _refuse_other_period(prepared, table, used)
     return doubts
-
-
-def _used(prepared: Prepared) -> NDArray[np.bool_]:
-    used = np.zeros(len(prepared.log.time), dtype=bool)
-    for run in prepared.runs:
-        used[run.slice] = True
-    return used
 
 
 def _refuse_clipped(where: str, follower: Floats) -> None:

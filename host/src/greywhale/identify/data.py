@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from greywhale.base.types import Floats
 from greywhale.files.log import Log
-from greywhale.motion.runs import Run
+from greywhale.motion.runs import Run, gap_free_runs
 from greywhale.protocol.firmware import JOINTS, TICK_S
 
 WINDOW_S = 0.5
@@ -84,7 +84,9 @@ def prepare(log: Log, filter_shift: int | None) -> Prepared:
     following = log.state == "following"
     wanted = following if following.any() else np.ones(len(log.time), dtype=bool)
     period = float(np.median(np.diff(log.time)))
-    runs = tuple(_runs(log.time, wanted, period))
+    # Long enough for a window. A few rows may be missing or late, as voltages change little meanwhile.
+    least = max(8, round(WINDOW_S / period) + 2)
+    runs = tuple(one for one in gap_free_runs(log.time, wanted, LONGEST_GAP_S) if one.stop - one.start >= least)
     size = max(5, 2 * round(SMOOTHING_S / period / 2) + 1)
     velocity, acceleration, smooth = (np.zeros_like(log.follower) for _ in range(3))
     for run in runs:
@@ -93,9 +95,7 @@ def prepare(log: Log, filter_shift: int | None) -> Prepared:
         piece = at(even, time, log.follower[run.slice])
         for found, order in ((smooth, 0), (velocity, 1), (acceleration, 2)):
             found[run.slice] = at(time, even, savgol_filter(piece, size, 2, deriv=order, delta=run.period, axis=0))
-    used = np.zeros(len(log.time), dtype=bool)
-    for run in runs:
-        used[run.slice] = True
+    used = rows_in(runs, len(log.time))
     delay = 0.0 if filter_shift is None else CONVERSION_S + TICK_S * ((1 << filter_shift) - 1)
     noise = _noise(log.follower - smooth, used, size)
     moving = np.array([bool(used.any() and np.ptp(log.follower[used, joint]) > 0.1) for joint in range(JOINTS)])
@@ -103,16 +103,12 @@ def prepare(log: Log, filter_shift: int | None) -> Prepared:
     return Prepared(log, runs, period, delay, velocity, acceleration, places, noise, moving)
 
 
-def _runs(time: Floats, wanted: NDArray[np.bool_], period: float) -> list[Run]:
-    """Stretches long enough for a window. A few rows may be missing or late, as voltages change little meanwhile."""
-    joined = (np.diff(time) <= max(1.5 * period, LONGEST_GAP_S)) & wanted[1:] & wanted[:-1]
-    edges = np.flatnonzero(np.diff(np.concatenate(([False], joined, [False])).astype(np.int8)))
-    least = max(8, round(WINDOW_S / period) + 2)
-    return [
-        Run(int(start), int(stop) + 1, float(time[stop] - time[start]) / int(stop - start))
-        for start, stop in zip(edges[::2], edges[1::2], strict=True)
-        if stop + 1 - start >= least
-    ]
+def rows_in(runs: Sequence[Run], count: int) -> NDArray[np.bool_]:
+    """Which of `count` rows lie in one of the runs."""
+    used = np.zeros(count, dtype=bool)
+    for run in runs:
+        used[run.slice] = True
+    return used
 
 
 def _places(velocity: Floats, runs: tuple[Run, ...]) -> Floats:

@@ -11,6 +11,7 @@ from greywhale.base.errors import BadUsage
 from greywhale.base.types import Floats
 from greywhale.files.log import Log
 from greywhale.identify.data import LIVELY_RAD
+from greywhale.motion.runs import stretches
 
 # So many rows one after another are not the same by chance (a power of two). At rest they may be: only stretches in
 # which the arm moves count.
@@ -81,10 +82,9 @@ def _hash_runs(rows: Floats) -> NDArray[np.uint64]:
 
 def _count_lively(rows: Floats, shared: NDArray[np.bool_]) -> int:
     """How many rows lie in shared stretches in which a follower's joint moves."""
-    edges = np.flatnonzero(np.diff(np.concatenate(([False], shared, [False])).astype(np.int8)))
     joints = rows.shape[1] // 3
     return sum(
-        int(stop - start)
-        for start, stop in zip(edges[::2], edges[1::2], strict=True)
+        stop - start
+        for start, stop in stretches(shared)
         if np.ptp(rows[start:stop, joints : 2 * joints], axis=0).max() > LIVELY_RAD
     )

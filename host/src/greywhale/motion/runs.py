@@ -32,17 +32,20 @@ class Run:
         return math.ceil(seconds / self.period - 1e-9)
 
 
-def gap_free_runs(time: NDArray[np.float64], wanted: NDArray[np.bool_]) -> list[Run]:
-    """The runs of at least two neighbouring wanted samples, between which nothing is missing."""
+def stretches(mask: NDArray[np.bool_]) -> list[tuple[int, int]]:
+    """Where it is true: the first row of each stretch, and the first behind it."""
+    edges = np.flatnonzero(np.diff(np.concatenate(([False], mask, [False])).astype(np.int8)))
+    return [(int(start), int(stop)) for start, stop in edges.reshape(-1, 2)]
+
+
+def gap_free_runs(time: NDArray[np.float64], wanted: NDArray[np.bool_], no_gap_s: float = 0.0) -> list[Run]:
+    """The runs of at least two neighbouring wanted samples, between which nothing is missing.
+
+    In any case samples within `no_gap_s` are neighbours.
+    """
     steps = np.diff(time)
-    period = float(np.median(steps))
-    joined = (steps <= _GAP * period) & wanted[1:] & wanted[:-1]
-    edges = np.flatnonzero(np.diff(np.concatenate(([False], joined, [False])).astype(np.int8)))
-    runs = []
-    for start, stop in zip(edges[::2], edges[1::2], strict=True):
-        mean_period = float(time[stop] - time[start]) / int(stop - start)
-        runs.append(Run(int(start), int(stop) + 1, mean_period))
-    return runs
+    joined = (steps <= max(_GAP * float(np.median(steps)), no_gap_s)) & wanted[1:] & wanted[:-1]
+    return [Run(start, stop + 1, float(time[stop] - time[start]) / (stop - start)) for start, stop in stretches(joined)]
 
 
 def resting(angle: NDArray[np.float64], window: int, band: float) -> NDArray[np.bool_]:

@@ -22,7 +22,7 @@ import scipy  # loads a part of itself when it is first used
 
 from greywhale import _native
 from greywhale.base.types import Floats, Integers
-from greywhale.motion.runs import resting
+from greywhale.motion.runs import resting, stretches
 from greywhale.protocol.firmware import JOINTS, TICK_S, pwm_steps
 from greywhale.protocol.schema import Board
 
@@ -92,9 +92,8 @@ def _swings_at_rest(leader: Floats, records: Floats, mean_s: float, still_rad: f
     window, mean, least = (round(seconds / TICK_S) for seconds in (REST_AFTER_S, mean_s, SHORTEST_REST_S))
     for joint in range(JOINTS):
         rest = resting(leader[:, joint], window, still_rad)
-        edges = np.flatnonzero(np.diff(np.concatenate(([False], rest, [False])).astype(np.int8)))
         swings = []
-        for first, last in zip(edges[::2], edges[1::2], strict=True):
+        for first, last in stretches(rest):
             # A mean over samples of the next move would show that move.
             path = records[first : last - mean, joint]
             if len(path) >= least:
