@@ -6,11 +6,12 @@ greywhale_sim.faults. sim/web/exports.cpp takes the numbers and the calls.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
-from greywhale.arm import ArmParameters, PotFault
+from greywhale.arm import ArmParameters
 from greywhale.arm.parameters import PotentiometerBank
 from greywhale.base.types import Floats
 from greywhale.dashboard.answers import arm_facts
@@ -62,29 +63,19 @@ class _Recorder:
         self.pot_faults = self
         self.leader_pots, self.follower_pots = _Bank(self.calls, 0), _Bank(self.calls, JOINTS)
 
-    def inject(self, pot: int, kind: PotFault) -> None:
-        self.calls.append(["inject", pot, kind.value])
-
-    def swap(self, one: int, other: int) -> None:
-        self.calls.append(["swap", one, other])
-
-    def touch(self, one: int, other: int) -> None:
-        self.calls.append(["touch", one, other])
-
-    def let_float(self, pot: int, floats: bool) -> None:
-        self.calls.append(["let_float", pot, int(floats)])
-
-    def wire_motor(self, joint: int, gain: float, driver: int) -> None:
-        self.calls.append(["wire_motor", joint, gain, driver])
-
-    def change_supply(self, volts: float) -> None:
-        self.calls.append(["change_supply", volts])
+    def __getattr__(self, name: str) -> Callable[..., None]:
+        return lambda *given: self.calls.append([name, *(_number(one) for one in given)])
 
     def __setattr__(self, name: str, value: Any) -> None:
         if name == "shared_supply":
             self.calls.append(["share_supply"])
         else:
             super().__setattr__(name, value)
+
+
+def _number(given: Any) -> float:
+    value: float = getattr(given, "value", given)  # a kind of fault is its number
+    return int(value) if isinstance(value, bool) else value
 
 
 class _Bank:
