@@ -20,7 +20,7 @@ from threadpoolctl import threadpool_limits
 from greywhale.arm.parameters import USUAL_TRACK_RAD
 from greywhale.base.types import Floats
 from greywhale.identify.closed_loop import Loop
-from greywhale.identify.data import FINE_STEP_S, Prepared, prepare
+from greywhale.identify.data import COUNTS, FINE_STEP_S, Prepared, prepare
 from greywhale.identify.space import COUPLED, WHOLE_ARM, Space
 from greywhale.identify.steps import WindowFit
 from greywhale.identify.windows import WindowResidual
@@ -50,7 +50,6 @@ SYSTEMATIC_ALPHA = {0: 0.03, 1: 0.001, 2: 0.001, 3: 3.0}  # of joints
 WIDENED = 1.3  # times the variance
 # Moments of a tick at which its four conversions hold their input, as shares of it.
 MOMENTS = (0.1, 0.3, 0.5, 0.7)
-COUNTS = 1024
 
 
 def scatter_of_fits(

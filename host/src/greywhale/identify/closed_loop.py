@@ -13,8 +13,7 @@ from numpy.typing import NDArray
 from greywhale.arm import ArmParameters, PotentiometerBank
 from greywhale.arm.parameters import MOST_NOISE_V, Potentiometer
 from greywhale.base.types import Floats
-from greywhale.identify.data import BLOCK_S, Prepared, at, part_of
-from greywhale.identify.noise import pot_noise
+from greywhale.identify.data import BLOCK_S, Prepared, at, part_of, pot_noise
 from greywhale.identify.space import Space
 from greywhale.protocol.firmware import JOINTS, TICK_S
 from greywhale.protocol.table import ParameterTable

@@ -8,11 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from greywhale.arm.parameters import USUAL_TRACK_RAD
 from greywhale.base.types import Floats
 from greywhale.files.log import Log
 from greywhale.motion.runs import Run, gap_free_runs
-from greywhale.protocol.firmware import JOINTS, TICK_S
+from greywhale.protocol.firmware import CONVERSIONS, JOINTS, TICK_S
 
+COUNTS = 1024  # of the converter
 WINDOW_S = 0.5
 SMOOTHING_S = 0.04  # of the angle, to find velocities
 # Longest steps of the integration in a window, s: for the search, and for the final fit (a light link moves through its
@@ -101,6 +103,19 @@ def prepare(log: Log, filter_shift: int | None) -> Prepared:
     moving = np.array([bool(used.any() and np.ptp(log.follower[used, joint]) > 0.1) for joint in range(JOINTS)])
     places = _places(velocity, runs)
     return Prepared(log, runs, period, delay, velocity, acceleration, places, noise, moving)
+
+
+def pot_noise(log: Prepared, filter_shift: int, supply: float) -> Floats:
+    """The noise of the follower's four potentiometers, V rms, from the log's readings.
+
+    A tuner that knows of none would choose a Kd that magnifies it. A reading is the sum of four conversions after the
+    firmware's low-pass, which leaves share / (2 - share) of its input's variance. The converter's own steps make a part
+    of the noise.
+    """
+    share = 1.0 / (1 << filter_shift)
+    conversion = log.noise**2 * CONVERSIONS * (2.0 - share) / share
+    analog = np.maximum(conversion - (USUAL_TRACK_RAD / COUNTS) ** 2 / 12.0, 0.0)
+    return np.sqrt(analog) / USUAL_TRACK_RAD * supply
 
 
 def rows_in(runs: Sequence[Run], count: int) -> NDArray[np.bool_]:

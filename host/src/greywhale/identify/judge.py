@@ -16,9 +16,8 @@ from numpy.typing import NDArray
 from greywhale.arm import ArmParameters
 from greywhale.arm.parameters import JOINT_NAMES
 from greywhale.base.types import Floats, PerJoint
-from greywhale.identify.bootstrap import COUNTS
 from greywhale.identify.closed_loop import COMPARED_TICKS, Loop
-from greywhale.identify.data import Prepared
+from greywhale.identify.data import COUNTS, Prepared
 from greywhale.identify.hunting import Swings, describe_difference, swings_of
 from greywhale.identify.space import Space
 from greywhale.identify.windows import WindowResidual

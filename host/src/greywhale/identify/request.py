@@ -36,10 +36,8 @@ class IdentificationRequest:
 
     def loops(self) -> list[Loop]:
         """The fitted logs' closed loops, or none where the controller of one is not known."""
-        tables = [subject.table for subject in self.fitted]
-        if any(table is None for table in tables):
-            return []
-        return [Loop(one.log, one.table, self.white_box) for one in self.fitted if one.table is not None]
+        known = [(one.log, one.table) for one in self.fitted if one.table is not None]
+        return [Loop(*pair, self.white_box) for pair in known] if len(known) == len(self.fitted) else []
 
     def required_loops(self) -> list[Loop]:
         """The same, for a method that needs them."""

@@ -14,9 +14,9 @@ from greywhale.base.formats.whole import write_text
 from greywhale.base.types import Crc, Floats
 from greywhale.files.model import sealed, to_toml
 from greywhale.identify.combinations import CombinationFacts
+from greywhale.identify.data import pot_noise
 from greywhale.identify.found_model import EstimateFacts, FoundModel, ParameterEstimate, RivalFacts
 from greywhale.identify.judge import FIT, JudgedLog, LogVerdict, VerdictFacts
-from greywhale.identify.noise import pot_noise
 from greywhale.protocol.joints import Joints
 
 
