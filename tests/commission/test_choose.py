@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 from greywhale.commission.arm_on_port import ArmOnPort
-from greywhale.commission.choose import confirm
-from greywhale.commission.joint_trials import JointTrials
+from greywhale.commission.choose import JointTrials, confirm
 from greywhale.commission.trials import Trial, Trials
 from tests.commission.simulated import SimulatedRig
 from tests.commission.test_trials import BETTER, WILD, play, play_before, stiffer

@@ -18,10 +18,9 @@ from greywhale.base.side_job import SideJob
 from greywhale.base.types import Controllers, Flags, NotedProgress, show_no_progress
 from greywhale.commission import learn, start
 from greywhale.commission.arm_on_port import ArmOnPort, connected
-from greywhale.commission.choose import confirm
+from greywhale.commission.choose import JointTrials, confirm
 from greywhale.commission.evidence import Evidence, failing_plants, to_fit, to_validate
 from greywhale.commission.foresee import foresee
-from greywhale.commission.joint_trials import JointTrials
 from greywhale.commission.journal import CommissioningJournal
 from greywhale.commission.motions import JointRange, check_motion
 from greywhale.commission.request import CommissioningRequest
