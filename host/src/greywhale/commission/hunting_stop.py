@@ -32,27 +32,21 @@ class HuntingStop:
     """Call it with every sample; it raises Hunting."""
 
     def __init__(self) -> None:
-        self._ticks: deque[int] = deque()
-        self._leader: deque[tuple[int, ...]] = deque()
-        self._follower: deque[tuple[int, ...]] = deque()
+        self._last: deque[Received] = deque()
         self._count = 0
 
     def __call__(self, received: Received) -> None:
-        self._ticks.append(received.elapsed)
-        self._leader.append(tuple(received.sample.leader))
-        self._follower.append(tuple(received.sample.follower))
-        kept = 1000 * (WINDOW_S + SETTLE_S)
-        while received.elapsed - self._ticks[0] > kept:
-            self._ticks.popleft()
-            self._leader.popleft()
-            self._follower.popleft()
+        self._last.append(received)
+        while received.elapsed - self._last[0].elapsed > 1000 * (WINDOW_S + SETTLE_S):
+            self._last.popleft()
         self._count += 1
         if self._count % LOOK_EVERY == 0:
             self._look()
 
     def _look(self) -> None:
-        leader, follower = (np.array(rows) * ANGLE_LSB for rows in (self._leader, self._follower))
-        judged = np.array(self._ticks) > self._ticks[-1] - 1000 * WINDOW_S
+        leader = np.array([one.sample.leader for one in self._last]) * ANGLE_LSB
+        follower = np.array([one.sample.follower for one in self._last]) * ANGLE_LSB
+        judged = np.array([one.elapsed for one in self._last]) > self._last[-1].elapsed - 1000 * WINDOW_S
         turned = turns_of(follower[judged], VIOLENT.band_rad)
         hunting = (turned >= VIOLENT.turns) & (np.ptp(leader, axis=0) <= STILL_RAD)
         if hunting.any():
