@@ -64,17 +64,17 @@ def failing_plants(arm: ArmParameters, trials: Trials) -> Floats:
         if restless:
             # The one nearest to rest shows best where the margin is.
             calmest = min(restless, key=lambda one: int(one.rows[joint, KP]))
-            plant = _plant_that_hunts(arm, calmest.table, calmest, joint)
+            plant = _plant_that_hunts(arm, calmest, joint)
             if plant is not None:
                 found.append(plant)
     return np.array(found) if found else np.zeros((0, len(plant_row(arm))))
 
 
-def _plant_that_hunts(arm: ArmParameters, table: ParameterTable, trial: Trial, joint: int) -> Floats | None:
+def _plant_that_hunts(arm: ArmParameters, trial: Trial, joint: int) -> Floats | None:
     """The model itself where it hunts; None where no plant in reach does."""
     plants = _variants(plant_row(arm), joint)
     measured = _unrest(trial.traces, joint)
-    for plant, shown in zip(plants, predict(arm, table, trial.traces, plants), strict=True):
+    for plant, shown in zip(plants, predict(arm, trial.table, trial.traces, plants), strict=True):
         if _shows(shown, trial, joint, measured):
             found: Floats = plant
             return found

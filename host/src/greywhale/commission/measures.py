@@ -11,7 +11,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TypedDict
+from typing import TypedDict, cast
 
 import numpy as np
 
@@ -90,22 +90,12 @@ class Measures:
     def as_dict(self) -> dict[str, PartFacts]:
         """The facts of each part of the check."""
 
-        def of(values: Floats) -> list[float | None]:
+        def of(name: str, place: int) -> list[float | None]:
+            values = getattr(self, name)[place]
             return [float(f"{value:.6g}") if np.isfinite(value) else None for value in values]
 
-        return {
-            part: {
-                "error": of(self.error[place]),
-                "unrest": of(self.unrest[place]),
-                "rattle": of(self.rattle[place]),
-                "chatter": of(self.chatter[place]),
-                "ripple": of(self.ripple[place]),
-                "voltage": of(self.voltage[place]),
-                "overshoot": of(self.overshoot[place]),
-                "settling": of(self.settling[place]),
-            }
-            for place, part in enumerate(PARTS)
-        }
+        facts = {part: {name: of(name, place) for name in NAMES} for place, part in enumerate(PARTS)}
+        return cast("dict[str, PartFacts]", facts)
 
 
 def traces_of(log: Log, check: Check) -> Traces:

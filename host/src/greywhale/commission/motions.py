@@ -125,10 +125,7 @@ def _reaches(room: JointRange) -> Trajectory:
     human = human_reaches(REACHES_SEED, REACHES_S)
     middle, half = RANGE_RAD.mean(axis=1), 0.5 * (RANGE_RAD[:, 1] - RANGE_RAD[:, 0])
     shares = REACHES_SHARE * np.clip((human.angles - middle) / half, -1.0, 1.0)
-    angles = np.where(
-        shares > 0.0, room.pose + (room.high - room.pose) * shares, room.pose + (room.pose - room.low) * shares
-    )
-    return _back(Trajectory(human.time_s, angles), room.pose)
+    return _back(Trajectory(human.time_s, room.place(shares)), room.pose)
 
 
 def _slow(room: JointRange) -> Trajectory:

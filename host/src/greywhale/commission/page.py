@@ -13,7 +13,7 @@ from greywhale.arm.parameters import JOINT_NAMES
 from greywhale.base.formats.whole import write_text
 from greywhale.commission.measures import Measures
 from greywhale.commission.motions import PARTS
-from greywhale.commission.result import CommissioningResult
+from greywhale.commission.result import CommissioningResult, number_text
 from greywhale.commission.trials import Trial
 from greywhale.files.log import read_evidence
 
@@ -88,11 +88,7 @@ def _row(predicted: Measures, measured: Measures, measure: Measure, joints: list
 
 
 def _cell(predicted: float, measured: float, form: str) -> dict[str, str]:
-    return {"predicted": _text(predicted, form), "measured": _text(measured, form)}
-
-
-def _text(value: float, form: str) -> str:
-    return "-" if value != value else f"{value:{form}}"
+    return {"predicted": number_text(predicted, form), "measured": number_text(measured, form)}
 
 
 def _picture(outcome: CommissioningResult) -> str:

@@ -150,7 +150,9 @@ class CommissioningResult:
         ]
         for name, form in (("overshoot", ".0f"), ("settling", ".2f"), ("ripple", ".2f")):
             was, now = before.worst(name), after.worst(name)
-            lines.append(_row(name, [f"{_cell(was[joint], form)} -> {_cell(now[joint], form)}" for joint in joints]))
+            lines.append(
+                _row(name, [f"{number_text(was[joint], form)} -> {number_text(now[joint], form)}" for joint in joints])
+            )
         notes = [
             f"Joint {joint} ({JOINT_NAMES[joint]}): {fault}. No quieter controller follows as well."
             for joint in joints
@@ -164,5 +166,5 @@ def _row(name: str, cells: Sequence[str]) -> str:
     return f"{name:14}" + "".join(f"{cell:>16}" for cell in cells)
 
 
-def _cell(value: float, form: str) -> str:
+def number_text(value: float, form: str) -> str:
     return "-" if np.isnan(value) else f"{value:{form}}"
