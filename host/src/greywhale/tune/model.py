@@ -107,7 +107,7 @@ def _doubts(
     arm: ArmParameters, facts: Identification | None, table: ParameterTable, wanted: str | Path | None
 ) -> list[Doubt]:
     """Everything that speaks against the model, the gravest first."""
-    doubts = checks.doubt_completeness(facts)
+    doubts = list(checks.doubt_completeness(facts))
     if facts is not None:
         doubts += doubt_edits(arm, facts)
         doubts += checks.doubt_validation(facts)
@@ -115,7 +115,7 @@ def _doubts(
         doubts += checks.doubt_missing_covariance(arm, facts)
     if wanted is not None:
         doubts += checks.doubt_other_arm(arm, load_arm(wanted), str(wanted))
-    return doubts + checks.doubt_other_board(arm, facts, table)
+    return [*doubts, *checks.doubt_other_board(arm, facts, table)]
 
 
 def _table(
@@ -126,7 +126,7 @@ def _table(
     logged = facts.table() if facts is not None else None
     if params is not None:
         given = parameter_file.load(params).for_board(board)
-        return given, checks.doubt_other_table(given, logged, str(params))
+        return given, list(checks.doubt_other_table(given, logged, str(params)))
     if logged is not None:
         return logged, []
     # The best guess: the shipped values, with what the model does state.

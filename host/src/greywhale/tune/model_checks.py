@@ -129,79 +129,65 @@ def identification_of(arm: ArmParameters, name: str) -> Identification | None:
     return facts
 
 
-def doubt_completeness(facts: Identification | None) -> list[Doubt]:
+def doubt_completeness(facts: Identification | None) -> Iterator[Doubt]:
     """Doubt an arm that was not identified at all, or not to the end."""
     if facts is None:
-        return [
-            Doubt(
-                "nothing in it was identified: it is an arm file, not a model",
-                "make a model from logs of your arm with greywhale identify",
-            )
-        ]
-    if facts.status != "complete":
-        return [Doubt(f'its identification is "{facts.status}"', "identify again and let it end")]
-    return []
+        yield Doubt(
+            "nothing in it was identified: it is an arm file, not a model",
+            "make a model from logs of your arm with greywhale identify",
+        )
+    elif facts.status != "complete":
+        yield Doubt(f'its identification is "{facts.status}"', "identify again and let it end")
 
 
-def doubt_validation(facts: Identification) -> list[Doubt]:
+def doubt_validation(facts: Identification) -> Iterator[Doubt]:
     """Doubt a model for which no log speaks but the fitted ones."""
     others = [log for log in facts.log if log.role != FIT]
     if not others:
-        return [
-            Doubt(
-                "it was not validated on a second log",
-                "record another one and identify again with --validate SECOND.csv",
-            )
-        ]
+        yield Doubt(
+            "it was not validated on a second log",
+            "record another one and identify again with --validate SECOND.csv",
+        )
     poor = [log.verdict for log in others if log.verdict.is_worse]
     if not poor:
-        return []
+        return
     worst = min(poor, key=lambda verdict: verdict.improvement)
-    learnt = (
-        ""
-        if len(poor) == len(others)
-        else ", though on others it is not: it may have learnt its controller, not the arm"
+    learnt = ", though on others it is not: it may have learnt its controller, not the arm"
+    yield Doubt(
+        f"on {worst.name} ({worst.role}) it is worse than the arm file it began with, by more than chance explains "
+        f"({sum(worst.model):.3g} against {sum(worst.white_box):.3g} rad²){learnt if len(poor) < len(others) else ''}",
+        "check supply, directions and controller files, record livelier motion and identify again",
     )
-    return [
-        Doubt(
-            f"on {worst.name} ({worst.role}) it is worse than the arm file it began with, by more than chance explains "
-            f"({sum(worst.model):.3g} against {sum(worst.white_box):.3g} rad²){learnt}",
-            "check supply, directions and controller files, record livelier motion and identify again",
-        )
-    ]
 
 
-def doubt_behaviour(facts: Identification) -> list[Doubt]:
+def doubt_behaviour(facts: Identification) -> Iterator[Doubt]:
     """Doubt a model that does not understand how a joint hunts, or how it follows with a changed controller."""
     if not facts.doubts:
-        return []
+        return
     more = f" (and {len(facts.doubts) - 1} more such findings)" if len(facts.doubts) > 1 else ""
     reason, _, remedy = facts.doubts[0].rstrip(".").rpartition(": ")
-    return [Doubt(f"{reason}{more}", f"to mend it, {remedy}")]
+    yield Doubt(f"{reason}{more}", f"to mend it, {remedy}")
 
 
-def doubt_missing_covariance(arm: ArmParameters, facts: Identification) -> list[Doubt]:
+def doubt_missing_covariance(arm: ArmParameters, facts: Identification) -> Iterator[Doubt]:
     """Doubt a model that does not say, for every joint in use, how uncertain it is."""
     if facts.covariance is None:
-        return [
-            Doubt(
-                f"it does not say how uncertain it is (method {facts.method} does not)",
-                "identify with --method default",
-            )
-        ]
+        yield Doubt(
+            f"it does not say how uncertain it is (method {facts.method} does not)",
+            "identify with --method default",
+        )
+        return
     still = [joint for joint in arm.joints_in_use if not _parameters_of(facts, joint)]
     if not still:
-        return []
+        return
     named = " and ".join(f"joint {joint} ({JOINT_NAMES[joint]})" for joint in still)
-    return [
-        Doubt(
-            f"{named} did not move in its logs, so nothing of {'it' if len(still) == 1 else 'them'} was identified",
-            "record with every joint moving by half a radian or more and identify again",
-        )
-    ]
+    yield Doubt(
+        f"{named} did not move in its logs, so nothing of {'it' if len(still) == 1 else 'them'} was identified",
+        "record with every joint moving by half a radian or more and identify again",
+    )
 
 
-def doubt_precision(arm: ArmParameters, table: ParameterTable) -> list[Doubt]:
+def doubt_precision(arm: ArmParameters, table: ParameterTable) -> Iterator[Doubt]:
     """Doubt a model if the arms that its logs allow follow differently under the board's present controllers.
 
     Single parameters may be known poorly without harm (torque per volt of a joint that carries nothing). So the effect
@@ -213,7 +199,7 @@ def doubt_precision(arm: ArmParameters, table: ParameterTable) -> list[Doubt]:
     motion = max(shares, key=lambda name: float(np.max(shares[name])) / SPREAD[name])
     joint = int(np.argmax(shares[motion]))
     if shares[motion][joint] <= SPREAD[motion]:
-        return []
+        return
     facts = identification_of(arm, arm.name)
     assert facts is not None
     harm = {
@@ -226,14 +212,12 @@ def doubt_precision(arm: ArmParameters, table: ParameterTable) -> list[Doubt]:
     guilty = facts.parameter[max(harm, key=lambda index: harm[index])]
     kind = guilty.name.partition(".")[2]
     size = f"{guilty.value:.2g} +- {guilty.standard_deviation or 0.0:.2g} {guilty.unit}".rstrip()
-    return [
-        Doubt(
-            f"joint {joint} ({JOINT_NAMES[joint]}) is too uncertain: arms that its logs allow follow {motion} "
-            f"differently by {100 * shares[motion][joint]:.0f} % of the tracking error (at most "
-            f"{100 * SPREAD[motion]:.0f} %), most of all because {kind} is {size}",
-            f"record again ({EXCITATION.get(kind, 'move that joint through its range')}) and identify again",
-        )
-    ]
+    yield Doubt(
+        f"joint {joint} ({JOINT_NAMES[joint]}) is too uncertain: arms that its logs allow follow {motion} "
+        f"differently by {100 * shares[motion][joint]:.0f} % of the tracking error (at most "
+        f"{100 * SPREAD[motion]:.0f} %), most of all because {kind} is {size}",
+        f"record again ({EXCITATION.get(kind, 'move that joint through its range')}) and identify again",
+    )
 
 
 def _motions(arm: ArmParameters, table: ParameterTable) -> dict[str, Experiment]:
@@ -271,7 +255,7 @@ def _parameters_of(facts: Identification, joint: int) -> list[ParameterFacts]:
     return [one for one in facts.parameter if one.name.startswith(f"joint{joint}.")]
 
 
-def doubt_other_arm(model: ArmParameters, arm: ArmParameters, name: str) -> list[Doubt]:
+def doubt_other_arm(model: ArmParameters, arm: ArmParameters, name: str) -> Iterator[Doubt]:
     """Doubt a model of another arm file: geometry, gears, stops and supply must be the user's in both."""
     ours, theirs = (dict(_leaves(known_before(one))) for one in (model, arm))
     for key, value in ours.items():
@@ -281,13 +265,11 @@ def doubt_other_arm(model: ArmParameters, arm: ArmParameters, name: str) -> list
         else:
             equal = bool(value == other)
         if not equal:
-            return [
-                Doubt(
-                    f"it is of another arm than {name}: {key} is {value} here and {other} there",
-                    "identify with that arm file",
-                )
-            ]
-    return []
+            yield Doubt(
+                f"it is of another arm than {name}: {key} is {value} here and {other} there",
+                "identify with that arm file",
+            )
+            return
 
 
 def _leaves(data: object, name: str = "") -> Iterator[tuple[str, Any]]:
@@ -301,10 +283,10 @@ def _leaves(data: object, name: str = "") -> Iterator[tuple[str, Any]]:
         yield name, data
 
 
-def doubt_other_table(given: ParameterTable, logged: ParameterTable | None, name: str) -> list[Doubt]:
+def doubt_other_table(given: ParameterTable, logged: ParameterTable | None, name: str) -> Iterator[Doubt]:
     """Doubt a board's table that differs from the logs' in more than its controllers and limits."""
     if logged is None:
-        return []
+        return
     for parameter in schema.PARAMETERS:
         matters = parameter.name in ("supply_mv", "filter_shift") or parameter.name.endswith(
             (".zero", ".scale", ".motor_sign")
@@ -312,48 +294,42 @@ def doubt_other_table(given: ParameterTable, logged: ParameterTable | None, name
         here, there = given[parameter.name], logged[parameter.name]
         if matters and here != there:
             was, now = (f"{parameter.to_physical(raw):g} {parameter.unit}".rstrip() for raw in (there, here))
-            return [
-                Doubt(
-                    f"its logs were recorded with another parameter table than {name}: {parameter.name} was {was} and "
-                    f"is {now}",
-                    "record and identify with the board as it is now",
-                )
-            ]
-    return []
+            yield Doubt(
+                f"its logs were recorded with another parameter table than {name}: {parameter.name} was {was} and "
+                f"is {now}",
+                "record and identify with the board as it is now",
+            )
+            return
 
 
-def doubt_other_board(arm: ArmParameters, facts: Identification | None, table: ParameterTable) -> list[Doubt]:
+def doubt_other_board(arm: ArmParameters, facts: Identification | None, table: ParameterTable) -> Iterator[Doubt]:
     """Doubt a table whose period, supply or potentiometers are not those of the model and its logs."""
-    return [*_doubt_period(facts, table), *_doubt_supply(arm, table), *_doubt_slopes(arm, table)]
+    yield from _doubt_period(facts, table)
+    yield from _doubt_supply(arm, table)
+    yield from _doubt_slopes(arm, table)
 
 
-def _doubt_period(facts: Identification | None, table: ParameterTable) -> list[Doubt]:
+def _doubt_period(facts: Identification | None, table: ParameterTable) -> Iterator[Doubt]:
     period = table.period_ms
     logged = sorted({log.period_ms for log in facts.log if log.period_ms is not None}) if facts is not None else []
-    if not logged or period in logged:
-        return []
-    return [
-        Doubt(
-            f"its logs were recorded at a control period of {' and '.join(map(str, logged))} ms, but the tuning "
-            f"is for {period} ms",
+    if logged and period not in logged:
+        yield Doubt(
+            f"its logs were recorded at a control period of {' and '.join(map(str, logged))} ms, but the tuning is for "
+            f"{period} ms",
             f"record and identify at {period} ms",
         )
-    ]
 
 
-def _doubt_supply(arm: ArmParameters, table: ParameterTable) -> list[Doubt]:
+def _doubt_supply(arm: ArmParameters, table: ParameterTable) -> Iterator[Doubt]:
     supply = table.supply_v
-    if abs(supply - arm.drive.supply) <= SAME_SUPPLY * arm.drive.supply:
-        return []
-    return [
-        Doubt(
+    if abs(supply - arm.drive.supply) > SAME_SUPPLY * arm.drive.supply:
+        yield Doubt(
             f"its drive.supply is {arm.drive.supply:g} V, but the board's supply_mv says {supply:g} V",
             "correct the one that is wrong (greywhale params set supply_mv=..., or the arm file and identify again)",
         )
-    ]
 
 
-def _doubt_slopes(arm: ArmParameters, table: ParameterTable) -> list[Doubt]:
+def _doubt_slopes(arm: ArmParameters, table: ParameterTable) -> Iterator[Doubt]:
     for side, bank in (("leader", arm.leader_pots), ("follower", arm.follower_pots)):
         for joint, pot in enumerate(bank.joint):
             scale = f"{side}{joint}.scale"
@@ -362,11 +338,9 @@ def _doubt_slopes(arm: ArmParameters, table: ParameterTable) -> list[Doubt]:
             track = table.physical(scale) * CONVERTER_SPAN
             wanted = pot.direction * pot.track
             if abs(track - wanted) > SAME_SLOPE * abs(wanted):
-                return [
-                    Doubt(
-                        f"its {side} potentiometer {joint} turns {wanted:.3g} rad from end to end, but the board's "
-                        f"{scale} makes it {track:.3g} rad",
-                        f"correct the one that is wrong ({MATCH})",
-                    )
-                ]
-    return []
+                yield Doubt(
+                    f"its {side} potentiometer {joint} turns {wanted:.3g} rad from end to end, but the board's "
+                    f"{scale} makes it {track:.3g} rad",
+                    f"correct the one that is wrong ({MATCH})",
+                )
+                return

@@ -23,35 +23,34 @@ UNSEALED = (
 
 def doubt_edits(arm: ArmParameters, facts: Identification) -> list[Doubt]:
     """Doubt an arm whose numbers are no longer those that were identified."""
-    return _doubt_plant(arm, facts) or _doubt_seals(arm, facts)
+    doubt = _doubt_plant(arm, facts) or _doubt_seals(arm, facts)
+    return [doubt] if doubt else []
 
 
-def _doubt_seals(arm: ArmParameters, facts: Identification) -> list[Doubt]:
+def _doubt_seals(arm: ArmParameters, facts: Identification) -> Doubt | None:
     """Any number of the file: links and potentiometers have no second place that would tell."""
     if facts.seal is None:
-        return []
+        return None
     now = seals(arm, arm.identification or {})
     tables = [key for key in {**now, **facts.seal} if now.get(key) != facts.seal.get(key)]
     if not tables:
-        return []
-    return [Doubt(f"{' and '.join(tables)} in it was edited since the identification, or is of another model", REMEDY)]
+        return None
+    return Doubt(f"{' and '.join(tables)} in it was edited since the identification, or is of another model", REMEDY)
 
 
-def _doubt_plant(arm: ArmParameters, facts: Identification) -> list[Doubt]:
+def _doubt_plant(arm: ArmParameters, facts: Identification) -> Doubt | None:
     """Numbers of joints that the file holds twice, so that the sentence can name one."""
     if facts.covariance is None or not facts.parameter:
-        return []
+        return None
     now, then = sampled_plants(with_one_uncertain(arm, facts, None), 2)
     # A gap or play of next to nothing is none, whatever its digits.
     least = np.array([SAME_GAP if name.endswith(OFTEN_NOTHING) else 1e-12 for name in PLANT_COLUMNS])
     differs = np.abs(now - then) > SAME_VALUE * np.maximum(np.abs(now), np.abs(then)) + least
     if not differs.any():
-        return []
+        return None
     place = int(np.argmax(differs))
-    return [
-        Doubt(
-            f"its numbers are not those that were identified ({PLANT_COLUMNS[place]} is {now[place]:.4g}, was "
-            f"{then[place]:.4g}), as if it was edited or put together from two arms",
-            REMEDY,
-        )
-    ]
+    return Doubt(
+        f"its numbers are not those that were identified ({PLANT_COLUMNS[place]} is {now[place]:.4g}, was "
+        f"{then[place]:.4g}), as if it was edited or put together from two arms",
+        REMEDY,
+    )
