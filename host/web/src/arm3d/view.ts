@@ -5,8 +5,8 @@ import { colours, themeChanged } from "../parts/theme";
 import type { LeaderHand } from "../bench/hand";
 import type { View } from "../parts/view";
 import type { Host } from "../host";
+import { upperFirst } from "../link/refusal";
 import { TABLE } from "../link/schema";
-import { COUNT, JOINTS, traceOf, type Quantity } from "../samples/samples";
 import type { Session } from "../session";
 import type { ArmScene, Preset } from "./scene";
 
@@ -25,7 +25,7 @@ export class ArmView implements View {
   constructor(private readonly session: Session, private readonly host: Pick<Host, "arm">) {
     this.element = el("section", { class: "card arm" },
       el("div", { class: "tools" }, ...PRESET_NAMES.map((preset) =>
-        button(preset.slice(0, 1).toUpperCase() + preset.slice(1), () => this.scene?.look(preset))), this.words),
+        button(upperFirst(preset), () => this.scene?.look(preset))), this.words),
       el("div", { class: "stage" }, this.canvas));
     themeChanged.on(() => this.scene?.paint(colours()));
     new ResizeObserver(() => this.resize()).observe(this.element);
@@ -65,10 +65,11 @@ export class ArmView implements View {
   frame(): void {
     const { samples, parameters } = this.session;
     if (!this.scene || !samples.end) return;
-    const of = (quantity: Quantity): number[] => Array.from({ length: JOINTS }, (_, joint) =>
-      samples.count(samples.end - 1, traceOf(quantity, joint)) * COUNT[quantity]);
     const supply = parameters ? parameters[TABLE.named("supply_mv").index]! / 1000 : DEFAULT_SUPPLY_V;
-    this.scene.draw({ leader: of("leader"), follower: of("follower"), voltage: of("voltage").map((volts) => volts / supply) });
+    this.scene.draw({
+      leader: samples.newest("leader"), follower: samples.newest("follower"),
+      voltage: samples.newest("voltage").map((volts) => volts / supply),
+    });
     this.canvas.dataset["tick"] = String(samples.lastTick);
   }
 }

@@ -1,7 +1,7 @@
 // A motion of the leader that a person draws: angle over time, joint by joint, played as by a hand.
 
 import { button, el, select, setText, svg } from "../parts/dom";
-import { JOINTS } from "../samples/samples";
+import { JOINT_NAMES, JOINTS } from "../samples/samples";
 import type { LeaderHand } from "./hand";
 import { angleAt, pointed, shareOf, type Limits } from "./limits";
 import { Stroke } from "./stroke";
@@ -24,8 +24,8 @@ export class DrawnMotion {
   private durationS = DURATIONS_S[1]!;
   private begunMs: number | null = null;
 
-  constructor(names: readonly string[], private readonly hand: LeaderHand, private readonly limits: Limits) {
-    const joint = select("Joint to draw", names.map((name, place) => [String(place), `${place} ${name}`] as const),
+  constructor(private readonly hand: LeaderHand, private readonly limits: Limits) {
+    const joint = select("Joint to draw", JOINT_NAMES.map((name, place) => [String(place), `${place} ${name}`] as const),
       (chosen) => { this.joint = Number(chosen); });
     const duration = select("Duration", DURATIONS_S.map((s) => [String(s), `${s} s`] as const),
       (chosen) => { this.durationS = Number(chosen); });

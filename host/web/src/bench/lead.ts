@@ -1,11 +1,11 @@
 // Leads the bench's leader arm by hand: sliders, and two pads on which two joints are dragged at once.
 
 import { el, setText } from "../parts/dom";
+import { JOINT_NAMES, type Samples } from "../samples/samples";
 import type { LeaderHand } from "./hand";
 import { angleAt, pointed, shareOf, type Limits } from "./limits";
 
 const PADS: readonly (readonly [across: number, up: number])[] = [[0, 1], [3, 2]];
-export const NAMES = ["base yaw", "shoulder pitch", "wrist pitch", "wrist roll"];
 
 export class Lead {
   readonly element = el("section", { class: "card" });
@@ -13,8 +13,8 @@ export class Lead {
   private readonly words: HTMLElement[] = [];
   private readonly pads: { pad: HTMLElement; knob: HTMLElement; follower: HTMLElement }[] = [];
 
-  constructor(private readonly hand: LeaderHand, private readonly limits: Limits) {
-    const rows = NAMES.map((name, joint) => {
+  constructor(private readonly hand: LeaderHand, private readonly samples: Samples, private readonly limits: Limits) {
+    const rows = JOINT_NAMES.map((name, joint) => {
       const slider = el("input", { type: "range", attrs: {
         min: String(limits.minimum[joint]), max: String(limits.maximum[joint]), step: "0.01", "aria-label": `Leader, ${name}, rad`,
       }, on: { input: () => hand.take(joint, Number(slider.value)) } });
@@ -45,12 +45,12 @@ export class Lead {
       if (pad.hasPointerCapture(event.pointerId)) drag(event);
     });
     this.pads.push({ pad, knob, follower });
-    return el("figure", {}, pad, el("figcaption", { class: "quiet" }, `${NAMES[across]} →, ${NAMES[up]} ↑`));
+    return el("figure", {}, pad, el("figcaption", { class: "quiet" }, `${JOINT_NAMES[across]} →, ${JOINT_NAMES[up]} ↑`));
   }
 
   draw(): void {
     const shown = this.hand.angles;
-    const follower = this.hand.measured("follower");
+    const follower = this.samples.newest("follower");
     shown.forEach((angle, joint) => {
       const slider = this.sliders[joint]!;
       if (document.activeElement !== slider || !this.hand.leads) slider.value = String(angle);

@@ -7,7 +7,7 @@ import { SIZES, type Bench, type BenchControls, type BenchWish, type Host, type 
 import type { Session } from "../session";
 import type { LeaderHand } from "./hand";
 import { DrawnMotion } from "./drawn_motion";
-import { Lead, NAMES } from "./lead";
+import { Lead } from "./lead";
 
 const TITLES: Readonly<Record<Size, readonly [title: string, unit: string]>> = {
   supply: ["Supply", "V"], load: ["Load at the tip", "kg"], noise: ["Sensor noise", "×"], play: ["Gear play", "×"],
@@ -41,8 +41,8 @@ export class BenchView implements View {
   }
 
   private build(controls: BenchControls): void {
-    this.lead = new Lead(this.hand, controls.leader);
-    this.drawn = new DrawnMotion(NAMES, this.hand, controls.leader);
+    this.lead = new Lead(this.hand, this.session.samples, controls.leader);
+    this.drawn = new DrawnMotion(this.hand, controls.leader);
     this.element.replaceChildren(el("div", { class: "side" }, this.lead.element, this.drawn.element),
       el("div", { class: "side" }, this.motions(), this.faults(controls), this.sizes(controls)));
   }

@@ -5,7 +5,7 @@ import { fixed } from "../files/words";
 import { LinkError } from "../link/declared";
 import { potName, upperFirst } from "../link/refusal";
 import { State, TABLE } from "../link/schema";
-import { button, el, setText } from "../parts/dom";
+import { button, el, setText, tableHead } from "../parts/dom";
 import type { View } from "../parts/view";
 import { traceOf } from "../samples/samples";
 import type { Session } from "../session";
@@ -39,13 +39,13 @@ export class CalibrateView implements View {
   }));
 
   constructor(private readonly session: Session) {
-    const head = ["potentiometer", "reads", "least", "most", "sweep"].map((text) => el("th", { attrs: { scope: "col" } }, text));
+    const head = tableHead("potentiometer", "reads", "least", "most", "sweep");
     const rows = this.rows.map(({ cells, sweep }, pot) => el("tr", {},
       el("th", { attrs: { scope: "row" } }, upperFirst(potName(pot)).replace(" potentiometer", "")), ...cells, el("td", {}, sweep)));
     this.element = el("div", { class: "editor" },
       el("section", { class: "card" },
         el("h2", {}, "1 Sweeps"), this.asked, el("div", { class: "row" }, this.next),
-        el("table", {}, el("thead", {}, el("tr", {}, ...head)), el("tbody", {}, ...rows)),
+        el("table", {}, head, el("tbody", {}, ...rows)),
         el("p", { class: "quiet" }, "Counts of 1023. Each sweep shows whether the right potentiometer turns, and it alone.")),
       el("section", { class: "card connect" },
         ...POSES.flatMap((_, place) => this.pose(place)),

@@ -1,8 +1,8 @@
 // What a person is asked to do: joints by name, and which way of each is positive: greywhale/board/calibrate/words.py.
 
 import { potName } from "../link/refusal";
+import { JOINT_NAMES } from "../samples/samples";
 
-const JOINT_NAMES = ["base yaw", "shoulder pitch", "wrist pitch", "wrist roll"];
 const POSITIVE_WAYS = [
   "counter-clockwise, seen from above",
   "up: the hand rises",
@@ -18,13 +18,9 @@ export const POSES_ASKED = [
   "Hold both arms in one and the same other pose: it shows how far they are apart.",
 ] as const;
 
-/** Leader joint 1, shoulder pitch. */
-export function jointName(pot: number): string {
-  return `${potName(pot).replace(" potentiometer ", " joint ")}, ${JOINT_NAMES[pot % 4]!}`;
-}
-
 export function sweepAsked(pot: number): string {
-  return `Now ${jointName(pot)}: turn it, and no other, slowly to its positive end (${POSITIVE_WAYS[pot % 4]!}), then to its negative end, `
+  const joint = `${potName(pot).replace(" potentiometer ", " joint ")}, ${JOINT_NAMES[pot % 4]!}`;
+  return `Now ${joint}: turn it, and no other, slowly to its positive end (${POSITIVE_WAYS[pot % 4]!}), then to its negative end, `
     + "and let it rest.";
 }
 

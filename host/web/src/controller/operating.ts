@@ -1,6 +1,6 @@
 // Where the running arm is on its control surface: x and y of the newest samples, by the settings that run.
 
-import { COUNT, TICKS_A_SECOND, traceOf, type Samples } from "../samples/samples";
+import { TICKS_A_SECOND, type Samples } from "../samples/samples";
 import { inputs, type Settings } from "./law";
 import type { Point } from "./surface";
 
@@ -9,13 +9,12 @@ const EVERY = 5;
 
 /** The points of the last second of one joint, oldest first. */
 export function operatingPoints(samples: Samples, joint: number, settings: Settings, periodMs: number): Point[] {
-  const trace = traceOf("error", joint);
   const back = settings.ce_ticks * periodMs;
   const first = Math.max(samples.first + back, samples.end - SHOWN_TICKS);
   const points: Point[] = [];
   for (let number = samples.end - 1; number >= first; number -= EVERY) {
-    const error = samples.count(number, trace) * COUNT.error;
-    const change = error - samples.count(number - back, trace) * COUNT.error;
+    const error = samples.value(number, "error", joint);
+    const change = error - samples.value(number - back, "error", joint);
     const [x, y] = inputs(error, change, settings, periodMs);
     points.push({ x, y });
   }

@@ -1,6 +1,6 @@
 // What the model predicted of each trial of a commissioning, beside what was measured on the arm.
 
-import { el, select } from "../parts/dom";
+import { el, select, tableHead } from "../parts/dom";
 import type { Json } from "../host";
 
 /** How each measure of a part of the check is shown. */
@@ -46,12 +46,10 @@ export function predictedBeside(trials: readonly Trial[]): HTMLElement {
         el("td", {}, `${text(predicted, joint)} / ${text(measured, joint)}`)))));
   };
   show();
-  const head = ["trial", ...joints.map((joint) => `joint ${joint}`)];
   return el("div", { class: "scroll beside", attrs: { tabindex: "0", role: "region", "aria-label": "Predicted and measured" } },
     el("div", { class: "row" },
       select("Measure", NAMES.map((one) => [one, one] as const), (one) => { name = one; show(); }),
       select("Part of the check", parts.map((one) => [one, `in ${one}`] as const), (one) => { part = one; show(); }),
       unit),
-    el("table", {},
-      el("thead", {}, el("tr", {}, ...head.map((title) => el("th", { attrs: { scope: "col" } }, title)))), body));
+    el("table", {}, tableHead("trial", ...joints.map((joint) => `joint ${joint}`)), body));
 }

@@ -1,6 +1,6 @@
 // The running measures of the last ten seconds, a row a joint.
 
-import { el, setText } from "../parts/dom";
+import { el, setText, tableHead } from "../parts/dom";
 import { measure } from "../samples/measures";
 import { JOINTS, type Samples } from "../samples/samples";
 
@@ -17,12 +17,9 @@ export class MeasuresTable {
       this.cells.push(cells);
       return el("tr", {}, el("th", { attrs: { scope: "row" } }, el("span", { class: `key key-${joint}` }), ` ${joint}`), ...cells);
     });
-    const head = ["joint", "error rms mrad", "ripple V rms", "delay ms"];
+    const head = tableHead("joint", "error rms mrad", "ripple V rms", "delay ms");
     this.element = el("section", { class: "card" },
-      el("h2", {}, "Last ten seconds"),
-      el("table", {},
-        el("thead", {}, el("tr", {}, ...head.map((text) => el("th", { attrs: { scope: "col" } }, text)))),
-        el("tbody", {}, ...rows)));
+      el("h2", {}, "Last ten seconds"), el("table", {}, head, el("tbody", {}, ...rows)));
   }
 
   /** Measures anew, once a second at most. */

@@ -1,6 +1,6 @@
 // Watches every sample for an event and names the first that has it.
 
-import { COUNT, traceOf, type Quantity, type Samples } from "../samples/samples";
+import { type Quantity, type Samples } from "../samples/samples";
 
 export type Condition =
   | { readonly kind: "fault" }
@@ -33,11 +33,11 @@ export class Trigger {
       return samples.fault[number % samples.capacity] !== 0
         && (before < samples.first || samples.fault[before % samples.capacity] === 0);
     }
-    const trace = traceOf(condition.quantity, condition.joint);
-    const value = samples.count(number, trace) * COUNT[condition.quantity];
+    const { quantity, joint } = condition;
+    const value = samples.value(number, quantity, joint);
     if (condition.kind === "level") return Math.abs(value) >= Math.abs(condition.at);
     if (before < samples.first) return false;
-    const last = samples.count(before, trace) * COUNT[condition.quantity];
+    const last = samples.value(before, quantity, joint);
     return condition.kind === "rising"
       ? last < condition.at && value >= condition.at
       : last > condition.at && value <= condition.at;

@@ -1,10 +1,10 @@
 // The live view: charts of every tick, what stands under the cursor, running measures, capture and export.
 
-import { button, download, el, select, setText } from "../parts/dom";
+import { button, download, el, select, setText, tableHead } from "../parts/dom";
 import { themeChanged } from "../parts/theme";
 import type { View } from "../parts/view";
 import { logText } from "../samples/log";
-import { COUNT, QUANTITIES, TICKS_A_SECOND, traceOf } from "../samples/samples";
+import { JOINT_NAMES, QUANTITIES, QUANTITY_TITLES, TICKS_A_SECOND } from "../samples/samples";
 import type { Session } from "../session";
 import { Charts } from "./charts";
 import { MeasuresTable } from "./measures_table";
@@ -14,7 +14,6 @@ import { TriggerPanel } from "./trigger_panel";
 import { TimeWindow } from "./window";
 
 const SPANS_S = [1, 2, 5, 10, 30, 60, 600];
-const JOINT_NAMES = ["base yaw", "shoulder pitch", "wrist pitch", "wrist roll"];
 
 export class LiveView implements View {
   readonly name = "Live";
@@ -66,10 +65,7 @@ export class LiveView implements View {
       const label = el("label", {}, box, el("span", { class: `key key-${joint}` }), `${joint} `, el("span", { class: "wide" }, name));
       return el("tr", {}, el("th", { attrs: { scope: "row" } }, label), ...cells);
     });
-    const head = ["leader rad", "follower rad", "error rad", "voltage V"];
-    return el("table", { class: "values" },
-      el("thead", {}, el("tr", {}, this.moment, ...head.map((text) => el("th", { attrs: { scope: "col" } }, text)))),
-      el("tbody", {}, ...rows));
+    return el("table", { class: "values" }, tableHead(this.moment, ...QUANTITY_TITLES), el("tbody", {}, ...rows));
   }
 
   private showWindow(): void {
@@ -127,8 +123,7 @@ export class LiveView implements View {
     const shown = samples.timeOf(number) / TICKS_A_SECOND;
     setText(this.moment, cursor === null ? "now" : `at ${shown.toFixed(3)} s`);
     this.values.forEach((cells, joint) => QUANTITIES.forEach((quantity, place) => {
-      const value = samples.count(number, traceOf(quantity, joint)) * COUNT[quantity];
-      setText(cells[place]!, value.toFixed(quantity === "voltage" ? 3 : 4));
+      setText(cells[place]!, samples.text(number, quantity, joint));
     }));
     this.element.dataset["tick"] = String(samples.timeOf(number));
     this.element.dataset["first"] = String(samples.timeOf(samples.first));

@@ -1,6 +1,6 @@
 // The paper's measures of the chosen logs, as the verb `evaluate` says them.
 
-import { el, setText } from "../parts/dom";
+import { el, setText, tableHead } from "../parts/dom";
 import type { Host, Job } from "../host";
 
 type JointMeasures = {
@@ -28,11 +28,9 @@ export class LogMeasures {
   private readonly ended = new Map<string, Job>(); // jobs of evaluate, which may end before their id is known here
 
   constructor(private readonly host: Host) {
-    const head = ["log", ...COLUMNS.map(([title]) => title)];
     this.element.append(
       el("div", { class: "scroll", attrs: { tabindex: "0", role: "region", "aria-label": "Measures" } },
-        el("table", { class: "values" },
-          el("thead", {}, el("tr", {}, ...head.map((text) => el("th", { attrs: { scope: "col" } }, text)))), this.body)),
+        el("table", { class: "values" }, tableHead("log", ...COLUMNS.map(([title]) => title)), this.body)),
       this.words);
     host.jobs.listen((job) => {
       if (job.verb !== "evaluate" || job.state === "running") return;

@@ -1,19 +1,18 @@
 // The logs of the host's folder: one, or two laid over each other, with the paper's measures of each.
 
-import { button, el, select, setText } from "../parts/dom";
+import { button, el, select, setText, tableHead } from "../parts/dom";
 import { themeChanged } from "../parts/theme";
 import type { View } from "../parts/view";
 import type { Host } from "../host";
 import { Charts } from "../live/charts";
 import { moveByKey, timeButtons } from "../live/time_buttons";
 import { TimeWindow } from "../live/window";
-import { COUNT, JOINTS, TICKS_A_SECOND, traceOf, type Samples } from "../samples/samples";
+import { JOINTS, QUANTITIES, QUANTITY_TITLES, TICKS_A_SECOND, type Samples } from "../samples/samples";
 import type { Session } from "../session";
 import { LogMeasures } from "./measures";
 import { samplesIn } from "./recording";
 
 const MOST_CHOSEN = 2;
-const SHOWN = ["leader", "follower", "error", "voltage"] as const;
 
 type Chosen = { readonly name: string; readonly samples: Samples };
 
@@ -45,10 +44,7 @@ export class LogsView implements View {
         ...timeButtons(this.window),
         el("span", { class: "quiet" }, "leader dashed, follower solid; each log begins at 0 s")),
       this.charts.element,
-      el("table", { class: "values" },
-        el("thead", {}, el("tr", {}, this.moment, ...["leader rad", "follower rad", "error rad", "voltage V"].map((text) =>
-          el("th", { attrs: { scope: "col" } }, text)))),
-        this.values),
+      el("table", { class: "values" }, tableHead(this.moment, ...QUANTITY_TITLES), this.values),
       this.measures.element);
     this.element = el("div", { class: "logs" },
       el("section", { class: "card" }, el("h2", {}, "Logs"), this.hint, this.list), this.picture);
@@ -110,7 +106,7 @@ export class LogsView implements View {
     this.extent.lastTime = Math.max(0, ...chosen.map(({ samples }) => samples.lastTime));
     this.charts.lay(chosen.map(({ samples }, place) => ({ samples, shade: (shades) => shades.joints[place]! })));
     this.values.replaceChildren(...chosen.map(({ name }, place) => el("tr", {},
-      el("th", { attrs: { scope: "row" } }, el("span", { class: `key key-${place}` }), name), ...SHOWN.map(() => el("td")))));
+      el("th", { attrs: { scope: "row" } }, el("span", { class: `key key-${place}` }), name), ...QUANTITIES.map(() => el("td")))));
     this.showAll();
   }
 
@@ -137,8 +133,8 @@ export class LogsView implements View {
     this.chosen.forEach(({ samples }, place) => {
       const number = cursor === null ? samples.end : samples.at(cursor);
       const cells = this.values.children[place]!.querySelectorAll("td");
-      SHOWN.forEach((quantity, column) => setText(cells[column]!, number < samples.end
-        ? (samples.count(number, traceOf(quantity, this.joint)) * COUNT[quantity]).toFixed(quantity === "voltage" ? 3 : 4) : "–"));
+      QUANTITIES.forEach((quantity, column) =>
+        setText(cells[column]!, number < samples.end ? samples.text(number, quantity, this.joint) : "–"));
     });
   }
 

@@ -5,7 +5,7 @@ import { parameterFile, parametersIn } from "../files/parameter_file";
 import { rawAsGiven } from "../files/raw_value";
 import type { Parameter } from "../link/declared";
 import { TABLE } from "../link/schema";
-import { button, download, el, fileField, setText } from "../parts/dom";
+import { button, download, el, fileField, setText, tableHead } from "../parts/dom";
 import type { View } from "../parts/view";
 import type { NamedText } from "../port";
 import { physicalText } from "../samples/log";
@@ -27,7 +27,7 @@ export class ParametersView implements View {
 
   constructor(private readonly session: Session) {
     this.inputs = TABLE.parameters.map((parameter) => this.field(parameter));
-    const head = ["parameter", "value", "unit", "from", "to"].map((text) => el("th", { attrs: { scope: "col" } }, text));
+    const head = tableHead("parameter", "value", "unit", "from", "to");
     const rows = TABLE.parameters.map((parameter, place) => el("tr", { title: parameter.description },
       el("th", { attrs: { scope: "row" } }, parameter.name), el("td", {}, this.inputs[place]!), el("td", {}, parameter.unit),
       el("td", {}, physicalText(parameter, parameter.minimum)), el("td", {}, physicalText(parameter, parameter.maximum))));
@@ -36,7 +36,7 @@ export class ParametersView implements View {
         fileField("Restore a parameter file", ".toml", (file) => file && this.act(() => this.restore(file)))),
       el("div", { class: "tools" }, this.apply, this.store, this.discard, this.save),
       this.said, this.changes,
-      el("div", { class: "scroll" }, el("table", {}, el("thead", {}, el("tr", {}, ...head)), el("tbody", {}, ...rows))));
+      el("div", { class: "scroll" }, el("table", {}, head, el("tbody", {}, ...rows))));
     session.parametersChanged.on(() => this.show());
     session.changed.on(() => this.refreshButtons());
     this.refreshButtons();

@@ -41,6 +41,12 @@ export function select<Value extends string>(
   return box;
 }
 
+/** The head of a table: the title of each column, or a cell that has it. */
+export function tableHead(...titles: (string | HTMLElement)[]): HTMLElement {
+  const cells = titles.map((title) => (typeof title === "string" ? el("th", { attrs: { scope: "col" } }, title) : title));
+  return el("thead", {}, el("tr", {}, ...cells));
+}
+
 const SVG = "http://www.w3.org/2000/svg";
 
 export function svg<Tag extends keyof SVGElementTagNameMap>(

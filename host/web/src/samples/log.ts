@@ -3,7 +3,7 @@
 import { Board, type HelloReply, State, TABLE } from "../link/schema";
 import type { Parameter } from "../link/declared";
 import { crc32 } from "./crc32";
-import { COUNT, JOINTS, TICKS_A_SECOND, traceOf, type Quantity, type Samples } from "./samples";
+import { JOINTS, TICKS_A_SECOND, type Quantity, type Samples } from "./samples";
 
 const COLUMNS = ["leader", "follower", "voltage"] as const satisfies readonly Quantity[];
 const DIGITS: Readonly<Record<(typeof COLUMNS)[number], number>> = { leader: 6, follower: 6, voltage: 3 };
@@ -29,7 +29,7 @@ function joints(): number[] {
 
 function row(samples: Samples, number: number): string {
   const cells = COLUMNS.flatMap((name) =>
-    joints().map((joint) => (samples.count(number, traceOf(name, joint)) * COUNT[name]).toFixed(DIGITS[name])));
+    joints().map((joint) => samples.value(number, name, joint).toFixed(DIGITS[name])));
   const time = (samples.timeOf(number) / TICKS_A_SECOND).toFixed(6);
   return `${time},${cells.join(",")},${State.of(samples.state[number % samples.capacity]!).name}\n`;
 }

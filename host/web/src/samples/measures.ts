@@ -1,6 +1,6 @@
 // The running measures of each joint, as greywhale.motion defines them: error rms, ripple of the voltage, delay.
 
-import { COUNT, JOINTS, TICKS_A_SECOND, traceOf, type Samples } from "./samples";
+import { JOINTS, TICKS_A_SECOND, type Quantity, type Samples } from "./samples";
 
 const WINDOW_TICKS = 10 * TICKS_A_SECOND;
 const RIPPLE_TICKS = 25;
@@ -20,18 +20,13 @@ export type JointMeasures = {
 export function measure(samples: Samples): JointMeasures[] | null {
   const from = samples.at(samples.lastTime - WINDOW_TICKS + 1);
   if (samples.end - from < TICKS_A_SECOND) return null;
-  return Array.from({ length: JOINTS }, (_, joint) => ({
-    errorRms: rms(trace(samples, from, traceOf("error", joint), COUNT.error)),
-    rippleRms: ripple(trace(samples, from, traceOf("voltage", joint), COUNT.voltage)),
-    delay: delay(
-      trace(samples, from, traceOf("leader", joint), COUNT.leader),
-      trace(samples, from, traceOf("follower", joint), COUNT.follower),
-    ),
-  }));
-}
-
-function trace(samples: Samples, from: number, which: number, count: number): Float64Array {
-  return Float64Array.from({ length: samples.end - from }, (_, i) => samples.count(from + i, which) * count);
+  return Array.from({ length: JOINTS }, (_, joint) => {
+    const trace = (quantity: Quantity): Float64Array =>
+      Float64Array.from({ length: samples.end - from }, (_, i) => samples.value(from + i, quantity, joint));
+    return {
+      errorRms: rms(trace("error")), rippleRms: ripple(trace("voltage")), delay: delay(trace("leader"), trace("follower")),
+    };
+  });
 }
 
 function rms(values: Float64Array): number {

@@ -3,6 +3,7 @@
 import { Sample } from "../link/schema";
 
 export const JOINTS = 4;
+export const JOINT_NAMES = ["base yaw", "shoulder pitch", "wrist pitch", "wrist roll"];
 export const TICKS_A_SECOND = 1000;
 export const BLOCK = 64;
 const MOST_SAMPLES = 600_000; // a multiple of BLOCK
@@ -10,6 +11,7 @@ const MOST_SAMPLES = 600_000; // a multiple of BLOCK
 /** The traces of a sample in the order in which the rings hold them: four joints of each. */
 export const QUANTITIES = ["leader", "follower", "error", "voltage"] as const;
 export type Quantity = (typeof QUANTITIES)[number];
+export const QUANTITY_TITLES = ["leader rad", "follower rad", "error rad", "voltage V"];
 export const TRACES = QUANTITIES.length * JOINTS;
 
 /** Physical size of one count of a quantity: rad, rad, rad, V. */
@@ -115,6 +117,21 @@ export class Samples {
   /** One trace of one sample in counts. */
   count(number: number, trace: number): number {
     return this.values[(number % this.capacity) * TRACES + trace]!;
+  }
+
+  /** One number of one sample in its unit, rad or V. */
+  value(number: number, quantity: Quantity, joint: number): number {
+    return this.count(number, traceOf(quantity, joint)) * COUNT[quantity];
+  }
+
+  /** The same as a table shows it. */
+  text(number: number, quantity: Quantity, joint: number): string {
+    return this.value(number, quantity, joint).toFixed(quantity === "voltage" ? 3 : 4);
+  }
+
+  /** What the newest sample has of each joint, in its unit; 0 before any. */
+  newest(quantity: Quantity): number[] {
+    return Array.from({ length: JOINTS }, (_, joint) => (this.end ? this.value(this.end - 1, quantity, joint) : 0));
   }
 
   /** The first kept sample at or after a time in ticks; `end` when there is none. */
