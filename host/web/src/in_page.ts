@@ -84,7 +84,7 @@ function offerOthers(shell: Shell, docs: string | null): void {
 async function showBench({ code, data, worker, tuner, docs }: Parts): Promise<void> {
   const board = new PageBoard(worker, code, data, () => localStorage);
   const session = new Session(board);
-  const hand = new LeaderHand(board, session.samples, (error) => session.tell(sentence(error)));
+  const hand = new LeaderHand(board, session);
   const arm = new ArmView(session, { arm: async () => data.description });
   arm.leadBy(hand);
   const controller = new ControllerView(session, null, new PageTuner(tuner));
@@ -107,7 +107,7 @@ async function showBench({ code, data, worker, tuner, docs }: Parts): Promise<vo
     "The firmware of a real board and a simulated arm run inside this page; they need a browser with WebAssembly.",
   ], views.find(({ name }) => name === state?.view));
   const copy = button("Copy link", () => void session.attempt(async () => copyLink(session, {
-    view: shell.shown, joint: controller.shownJoint, ...board.condition(hand.measured("leader")), raw: await session.readParameters(),
+    view: shell.shown, joint: controller.shownJoint, ...board.condition(session.samples.newest("leader")), raw: await session.readParameters(),
   })), { title: "An address that opens this page as it is now", disabled: true });
   shell.offer(copy);
   offerOthers(shell, docs);

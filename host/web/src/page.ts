@@ -46,8 +46,7 @@ function addHost(host: Host): void {
   }
   void session.attempt(async () => {
     if (!(await host.state()).sim) return;
-    const hand = new LeaderHand(host.bench, session.samples, (error) =>
-      session.tell(error instanceof Error ? error.message : String(error)));
+    const hand = new LeaderHand(host.bench, session);
     arm.leadBy(hand);
     shell.add(new BenchView(session, host.bench, hand, host));
   });

@@ -1,7 +1,8 @@
 // The hand that leads the bench's leader arm from this page: one for all views, and the newest wish wins.
 
 import type { Bench } from "../host";
-import { COUNT, JOINTS, traceOf, type Samples } from "../samples/samples";
+import { JOINTS } from "../samples/samples";
+import type { Session } from "../session";
 
 export class LeaderHand {
   private readonly wanted: number[] = new Array<number>(JOINTS).fill(0);
@@ -9,9 +10,7 @@ export class LeaderHand {
   private sending = false;
   private waiting = false;
 
-  constructor(
-    private readonly bench: Bench, private readonly samples: Samples, private readonly failed: (error: unknown) => void,
-  ) {}
+  constructor(private readonly bench: Bench, private readonly session: Session) {}
 
   /** Whether this hand leads; until then the leader moves by itself. */
   get leads(): boolean {
@@ -20,19 +19,12 @@ export class LeaderHand {
 
   /** Where the leader is wanted while the hand leads, else where it is; rad. */
   get angles(): readonly number[] {
-    return this.held ? this.wanted : this.measured("leader");
-  }
-
-  /** The newest angles of the board, rad. */
-  measured(quantity: "leader" | "follower"): number[] {
-    const { samples } = this;
-    return Array.from({ length: JOINTS }, (_, joint) =>
-      samples.end ? samples.count(samples.end - 1, traceOf(quantity, joint)) * COUNT[quantity] : 0);
+    return this.held ? this.wanted : this.session.samples.newest("leader");
   }
 
   /** Brings one joint to an angle in rad. */
   take(joint: number, angle: number): void {
-    if (!this.held) this.wanted.splice(0, JOINTS, ...this.measured("leader"));
+    if (!this.held) this.wanted.splice(0, JOINTS, ...this.session.samples.newest("leader"));
     this.held = true;
     this.wanted[joint] = angle;
     this.waiting = true;
@@ -49,11 +41,7 @@ export class LeaderHand {
     this.sending = true;
     while (this.waiting) {
       this.waiting = false;
-      try {
-        await this.bench.change({ leader: this.wanted });
-      } catch (error) {
-        this.failed(error);
-      }
+      await this.session.attempt(() => this.bench.change({ leader: this.wanted }));
     }
     this.sending = false;
   }
