@@ -17,9 +17,7 @@ def summary(outcome: TuningResult) -> str:
     """The text for people."""
     how = f"{outcome.method}, strategy {outcome.strategy}, seed {outcome.seed}, {outcome.evaluations:,} evaluations"
     lines = [] if outcome.complete else ["UNFINISHED: interrupted; this is the best so far.", ""]
-    lines += [
-        f"Tuned for {outcome.model.name} at {outcome.period_ms} ms and {outcome.supply_v:g} V: {how}.",
-    ]
+    lines.append(f"Tuned for {outcome.model.name} at {outcome.period_ms} ms and {outcome.supply_v:g} V: {how}.")
     if outcome.held_out:
         lines += ["", "Expected on motions that were not trained on, before -> after:"]
     for one in outcome.held_out:
@@ -27,7 +25,7 @@ def summary(outcome: TuningResult) -> str:
     if more := overshooting(outcome):
         lines += ["", *more]
     if outcome.margins:
-        lines += ["", *_margins(outcome)]
+        lines += ["", *_held(outcome), *ripples(outcome)]
     notes = list(outcome.notes)
     if (travel := outcome.model.travel) is not None:
         lines += ["", f"For the board: {travel.sentence}"]
@@ -84,11 +82,6 @@ def _multiple(one: HeldOut, joint: int) -> str:
     return "-" if multiple is None else f"{multiple:.2f}"
 
 
-def _margins(outcome: TuningResult) -> list[str]:
-    """Whether all margins hold, or which do not; the notes say how far a joint swings. Then how loud the motors are."""
-    return [*_held(outcome), *ripples(outcome)]
-
-
 def ripples(outcome: TuningResult) -> list[str]:
     """A sentence about the ripple at rest, before and after; none where it was not judged."""
     pairs = [
@@ -101,6 +94,7 @@ def ripples(outcome: TuningResult) -> list[str]:
 
 
 def _held(outcome: TuningResult) -> list[str]:
+    """Whether all margins hold, or which do not; the notes say how far a joint swings."""
     if failing := failing_margins(outcome):
         return failing
     plants = outcome.margins[0].plants
