@@ -78,29 +78,15 @@ test("noise without an end is counted once and passed over", () => {
   assert.equal(decoder.bad, 1);
 });
 
-/** A client whose clock the test moves, and what it sent. */
+/** A client, what it sent, and what it told. */
 function rig() {
   const sent: Frame[] = [];
-  const alarms: { at: number; action: () => void; live: boolean }[] = [];
-  let now = 0;
   const heard: string[] = [];
   const client = new LinkClient(
     (wire) => sent.push(...decode(new FrameDecoder(), wire)),
     { sample: (payload) => heard.push(`sample ${payload.length}`), hello: (reply) => heard.push(`hello ${reply.board}`) },
-    (ms, action) => {
-      const alarm = { at: now + ms, action, live: true };
-      alarms.push(alarm);
-      return () => { alarm.live = false; };
-    },
   );
-  const pass = (ms: number): void => {
-    now += ms;
-    alarms.filter((alarm) => alarm.live && alarm.at <= now).forEach((alarm) => {
-      alarm.live = false;
-      alarm.action();
-    });
-  };
-  return { client, sent, pass, heard };
+  return { client, sent, heard };
 }
 
 test("replies find their request in any order, and a refusal is one sentence", async () => {
@@ -116,10 +102,11 @@ test("replies find their request in any order, and a refusal is one sentence", a
   await assert.rejects(third, /refused enable: .*\(joint 2, 2\.00 rad\): move the leader/);
 });
 
-test("silence is asked again with the same frame, then told", async () => {
-  const { client, sent, pass } = rig();
+test("silence is asked again with the same frame, then told", async ({ mock }) => {
+  mock.timers.enable({ apis: ["setTimeout"] });
+  const { client, sent } = rig();
   const asked = client.ask(schema.StatusRequest, {});
-  for (let i = 0; i < 4; i++) pass(PATIENCE_MS);
+  for (let i = 0; i < 4; i++) mock.timers.tick(PATIENCE_MS);
   await assert.rejects(asked, /does not answer status/);
   assert.equal(new Set(sent.map(({ seq }) => seq)).size, 1);
   assert.equal(sent.length, 4);

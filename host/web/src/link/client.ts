@@ -8,24 +8,16 @@ import { HelloReply, Nack, Sample } from "./schema";
 export const PATIENCE_MS = 500; // until a request is sent again
 const ATTEMPTS = 4;
 
-/** Runs `action` after some milliseconds and returns what cancels it. */
-export type Timer = (ms: number, action: () => void) => () => void;
-
-const browserTimer: Timer = (ms, action) => {
-  const id = setTimeout(action, ms);
-  return () => clearTimeout(id);
-};
-
 type Waiting = {
   readonly request: Message<object>;
   readonly arrived: (payload: Uint8Array) => void;
   readonly failed: (error: LinkError) => void;
-  cancel: () => void;
+  timer?: ReturnType<typeof setTimeout>; // of the next attempt
 };
 
 /** What comes without being asked for: samples, and the hello of a board that restarted. */
 export type Unasked = {
-  sample(payload: Uint8Array, seq: number): void;
+  sample(payload: Uint8Array): void;
   hello(reply: HelloReply): void;
 };
 
@@ -34,11 +26,7 @@ export class LinkClient {
   private readonly waiting = new Map<number, Waiting>();
   private last = 0; // 0 itself is for frames that nobody asked for
 
-  constructor(
-    private readonly send: (frame: Uint8Array) => void,
-    private readonly unasked: Unasked,
-    private readonly after: Timer = browserTimer,
-  ) {}
+  constructor(private readonly send: (frame: Uint8Array) => void, private readonly unasked: Unasked) {}
 
   /** Frames that were damaged on their way here. */
   get bad(): number {
@@ -55,7 +43,7 @@ export class LinkClient {
         return;
       }
       const settle = (act: () => void): void => {
-        this.waiting.get(seq)?.cancel();
+        clearTimeout(this.waiting.get(seq)?.timer);
         this.waiting.delete(seq);
         act();
       };
@@ -69,7 +57,6 @@ export class LinkClient {
           }
         }),
         failed: (error) => settle(() => reject(error)),
-        cancel: () => undefined,
       });
       this.attempt(seq, encodeFrame(request.type, seq, payload), ATTEMPTS);
     });
@@ -84,7 +71,7 @@ export class LinkClient {
       ));
       return;
     }
-    waiting.cancel = this.after(PATIENCE_MS, () => this.attempt(seq, frame, left - 1));
+    waiting.timer = setTimeout(() => this.attempt(seq, frame, left - 1), PATIENCE_MS);
     this.send(frame);
   }
 
@@ -103,7 +90,7 @@ export class LinkClient {
 
   private dispatch({ type, seq, payload }: Frame): void {
     if (type === Sample.type) {
-      if (payload.length === Sample.size) this.unasked.sample(payload, seq);
+      if (payload.length === Sample.size) this.unasked.sample(payload);
       return;
     }
     const waiting = this.waiting.get(seq);
