@@ -22,7 +22,7 @@ import type { NamedText } from "./port";
 import { Session } from "./session";
 import { Shell } from "./shell";
 import { PageBoard } from "./sources/in_page/board";
-import type { BenchData } from "./sources/in_page/bench_data";
+import type { BenchData } from "./sources/in_page/messages";
 import { PageTuner, type TunerParts } from "./sources/in_page/tuner";
 import { SerialBoard } from "./sources/serial/board";
 

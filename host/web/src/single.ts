@@ -1,7 +1,7 @@
 // The page with a bench inside as one file, which opens from a disk too: build.mjs has put modules, their data,
 // workers and the boards' firmware into elements of the page.
 
-import type { BenchData } from "./sources/in_page/bench_data";
+import type { BenchData } from "./sources/in_page/messages";
 import type { TunerData } from "./tuner/data";
 import { openPage, type Parts } from "./in_page";
 import type { NamedText } from "./port";

@@ -1,6 +1,6 @@
 // The page with a bench inside as a folder of files: modules, their data and workers lie beside it.
 
-import type { BenchData } from "./sources/in_page/bench_data";
+import type { BenchData } from "./sources/in_page/messages";
 import type { TunerData } from "./tuner/data";
 import { openPage, type Parts } from "./in_page";
 import type { NamedText } from "./port";

@@ -6,7 +6,7 @@ import { join } from "node:path";
 import { test } from "node:test";
 import { encodeFrame, FrameDecoder } from "../src/link/frames";
 import { ClearFaultRequest, EnableRequest, Fault, HelloReply, Sample, State, StopRequest, TelemetryRequest } from "../src/link/schema";
-import type { BenchData } from "../src/sources/in_page/bench_data";
+import type { BenchData } from "../src/sources/in_page/messages";
 import { Clock } from "../src/sources/in_page/clock";
 import { keepEeprom, keptEeprom } from "../src/sources/in_page/eeprom";
 import { Life } from "../src/sources/in_page/life";

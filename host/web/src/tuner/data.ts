@@ -1,4 +1,7 @@
-// What the tuner gets of greywhale: tools/site/tuner_data.py writes it.
+// What the tuner gets of greywhale (tools/site/tuner_data.py writes it), and what the page and its worker say to each other.
+
+import type { Searched, Tuned } from "../host";
+import type { Controllers } from "./module";
 
 export type Noise = { readonly seeds: readonly [number, number]; readonly gaps: readonly number[] };
 
@@ -86,3 +89,12 @@ export type TunerData = {
   readonly prices: Readonly<Record<Price, number>>;
   readonly search: SearchData;
 };
+
+export type ToTuner =
+  | { kind: "tune"; code: ArrayBuffer; data: TunerData; before: Controllers }
+  | { kind: "stop" };
+
+export type FromTuner =
+  | { kind: "searched"; searched: Searched }
+  | { kind: "tuned"; tuned: Tuned }
+  | { kind: "failed"; sentence: string };

@@ -1,6 +1,6 @@
 // The worker that tunes: it searches batch by batch, and between two of them hears whether it shall stop.
 
-import type { FromTuner, ToTuner } from "./messages";
+import type { FromTuner, ToTuner } from "./data";
 import { TunerModule } from "./module";
 import { Tuning } from "./tuning";
 

@@ -1,13 +1,12 @@
 // A board inside the page, in a worker of its own, with the bench around it.
 
 import type { Board, BoardListener } from "../../board";
-import { SIZES, type BenchControls, type BenchWish, type Bench as BenchActions, type Size } from "../../host";
+import { SIZES, type BenchControls, type BenchWish, type Bench as BenchActions, type Range, type Size } from "../../host";
 import { encodeFrame } from "../../link/frames";
 import { StopRequest } from "../../link/schema";
-import type { BenchData } from "./bench_data";
 import { keepEeprom, keptEeprom } from "./eeprom";
 import { SPEED } from "./life";
-import type { FromBench, ToBench } from "./messages";
+import type { BenchData, FromBench, ToBench } from "./messages";
 
 const PORT = "firmware and arm in this page, no cycle timing";
 const RESTARTED = "The board restarted, and its motors are off.";
@@ -29,7 +28,7 @@ export class PageBoard implements Board, BenchActions {
     private readonly worker: Worker, private readonly code: ArrayBuffer, private readonly data: BenchData,
     private readonly storage: () => Storage,
   ) {
-    this.sizes = this.ownSizes();
+    this.sizes = Object.fromEntries(SIZES.map((size) => [size, this.range(size).value])) as Record<Size, number>;
     worker.addEventListener("message", ({ data: message }: MessageEvent<FromBench>) => this.heard(message));
     worker.addEventListener("error", ({ message }) => this.failed(`The bench does not start: ${message}; reload the page.`));
     document.addEventListener("visibilitychange", () => this.showVisible());
@@ -108,16 +107,12 @@ export class PageBoard implements Board, BenchActions {
   }
 
   async controls(): Promise<BenchControls> {
-    const { leader, supply, load, noise, play, faults } = this.data;
+    const { leader, faults } = this.data;
     return {
       leader,
       broken: this.broken,
       faults: faults.map(({ name, description, places }) => ({ name, description, places: Object.keys(places).filter(Boolean) })),
-      supply: { ...supply, value: this.sizes.supply },
-      load: { ...load, value: this.sizes.load },
-      noise: { ...noise, value: this.sizes.noise },
-      play: { ...play, value: this.sizes.play },
-      speed: { ...SPEED, value: this.sizes.speed },
+      ...Object.fromEntries(SIZES.map((size) => [size, { ...this.range(size), value: this.sizes[size] }])),
     };
   }
 
@@ -142,17 +137,16 @@ export class PageBoard implements Board, BenchActions {
     if (fault === null) this.sizes.supply = this.data.supply.value; // mended as well
   }
 
-  private ownSizes(): Record<Size, number> {
-    const { supply, load, noise, play } = this.data;
-    return { supply: supply.value, load: load.value, noise: noise.value, play: play.value, speed: SPEED.value };
+  /** What a size may be, and what it is on a fresh bench. */
+  private range(size: Size): Range {
+    return size === "speed" ? SPEED : this.data[size];
   }
 
   /** What would bring a fresh bench to where this one is, its leader being at these angles now. */
   condition(leader: readonly number[]): { readonly sizes: readonly BenchWish[]; readonly acts: readonly BenchWish[] } {
-    const own = this.ownSizes();
     const led = this.led === "held" ? leader : this.led;
     return {
-      sizes: SIZES.filter((size) => this.sizes[size] !== own[size]).map((size) => ({ [size]: this.sizes[size] })),
+      sizes: SIZES.filter((size) => this.sizes[size] !== this.range(size).value).map((size) => ({ [size]: this.sizes[size] })),
       acts: [
         ...(led ? [{ leader: led.map((angle) => Number(angle.toFixed(3))) }] : []),
         ...this.broken.map((fault) => ({ fault })),

@@ -3,7 +3,7 @@
 import type { BenchWish, Range, Size } from "../../host";
 import { encodeFrame, FrameDecoder } from "../../link/frames";
 import { EnableRequest, LeadRequest, RenewRequest, StopRequest } from "../../link/schema";
-import type { BenchData } from "./bench_data";
+import type { BenchData } from "./messages";
 import type { BenchModule } from "./module";
 
 const LEASE_MS = 300;

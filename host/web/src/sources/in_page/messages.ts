@@ -1,7 +1,27 @@
-// What the page and the worker with its bench say to each other.
+// What the page and the worker with its bench say to each other, and what a bench is made of.
 
-import type { BenchWish } from "../../host";
-import type { BenchData } from "./bench_data";
+import type { ArmDescription, BenchControls, BenchWish, Range } from "../../host";
+
+/** A call of the module: its export's name, and numbers. */
+export type Call = readonly [name: string, ...given: number[]];
+
+/** As tools/site writes it: the arm, its mistakes, a person's motion. */
+export type BenchData = {
+  readonly arm: readonly number[]; // as the module takes it
+  readonly description: ArmDescription;
+  readonly leader: BenchControls["leader"];
+  readonly supply: Range;
+  readonly load: Range;
+  readonly noise: Range; // times the arm's own
+  readonly play: Range;
+  readonly faults: readonly {
+    readonly name: string;
+    readonly description: string;
+    readonly places: Readonly<Record<string, readonly Call[]>>; // "" for a fault without a place
+  }[];
+  /** Poses of the leader in rad, so many a second. */
+  readonly reaches: { readonly hz: number; readonly rows: readonly (readonly number[])[] };
+};
 
 export type ToBench =
   | { kind: "start"; code: ArrayBuffer; data: BenchData; eeprom: Uint8Array | null }

@@ -1,6 +1,6 @@
 // The bench as WebAssembly (sim/web/exports.cpp): firmware, arm, potentiometers, hands. It knows no clock and no page.
 
-import type { Call } from "./bench_data";
+import type { Call } from "./messages";
 
 export const TICK_SLICES = 4; // of 250 us
 const SEED = 1; // of the noise

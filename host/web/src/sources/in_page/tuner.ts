@@ -1,8 +1,7 @@
 // The tuner inside the page: a worker of its own for each tuning.
 
 import type { Searched, Tuned, Tuner } from "../../host";
-import type { TunerData } from "../../tuner/data";
-import type { FromTuner, ToTuner } from "../../tuner/messages";
+import type { FromTuner, ToTuner, TunerData } from "../../tuner/data";
 
 export type TunerParts = { readonly code: ArrayBuffer; readonly data: TunerData; readonly worker: Worker };
 
