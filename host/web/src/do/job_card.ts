@@ -2,13 +2,11 @@
 
 import { button, el, setText } from "../parts/dom";
 import type { Job, Jobs, Json } from "../host";
-import { JointPicture } from "./joint_picture";
 import { predictedBeside, trialsIn } from "./predicted";
 import { SearchCurve } from "./search_curve";
 
-const WORDS: Readonly<Record<Job["state"], string>> = {
-  running: "running", done: "done", failed: "failed", stopped: "stopped",
-};
+/** What a calibration says when it asks for a joint. */
+const ASKED = /\bjoint ([0-3])\b/;
 
 export class JobCard {
   readonly element: HTMLElement;
@@ -20,7 +18,7 @@ export class JobCard {
   private readonly said = el("pre", { class: "said", attrs: { tabindex: "0", "aria-label": "What the verb says" } });
   private readonly answer: HTMLFormElement;
   private readonly curve = new SearchCurve();
-  private readonly joint = new JointPicture();
+  private readonly joint = el("div", { class: "joint-picture", hidden: true, attrs: { role: "img" } });
   private readonly result = el("div", { class: "result" });
   private readonly stop: HTMLButtonElement;
   private shown: Job["state"] | null = null;
@@ -36,12 +34,12 @@ export class JobCard {
     } } }, line, el("button", { type: "submit" }, "Answer"));
     this.element = el("section", { class: "card job" },
       el("div", { class: "row" }, this.title, this.state, el("span", { class: "gap" }), this.stop),
-      this.bar, this.text, this.curve.element, this.error, this.said, this.joint.element, this.answer, this.result);
+      this.bar, this.text, this.curve.element, this.error, this.said, this.joint, this.answer, this.result);
   }
 
   show(job: Job): void {
     const running = job.state === "running";
-    setText(this.state, WORDS[job.state]);
+    setText(this.state, job.state);
     this.state.dataset["state"] = job.state === "failed" ? "fault" : running ? "following" : job.state;
     this.stop.hidden = this.bar.hidden = !running;
     this.answer.hidden = !running || !job.said.length; // a verb that asks has said what
@@ -55,13 +53,22 @@ export class JobCard {
     setText(this.error, job.error ?? "");
     const lines = job.said.filter((line) => line !== `greywhale: ${job.error}`).join("\n");
     this.said.hidden = !lines;
-    this.joint.hear(running && job.verb === "calibrate" ? job.said : []);
+    this.showJoint(running && job.verb === "calibrate" ? job.said.at(-1) ?? "" : "");
     if (this.said.textContent !== lines) {
       this.said.textContent = lines;
       this.said.scrollTop = this.said.scrollHeight;
     }
     if (job.state !== this.shown && job.result !== null) this.showResult(job.result);
     this.shown = job.state;
+  }
+
+  /** The positive way of the joint that a line asks for, a part of the picture that docs/calibrate.md has. */
+  private showJoint(line: string): void {
+    const asked = ASKED.exec(line)?.[1];
+    this.joint.hidden = asked === undefined;
+    if (asked === undefined || asked === this.joint.dataset["joint"]) return;
+    this.joint.dataset["joint"] = asked;
+    this.joint.setAttribute("aria-label", `The positive way of joint ${asked}`);
   }
 
   /** What is done now; a cost is in the curve, any other note stands beside. */
