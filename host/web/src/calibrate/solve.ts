@@ -5,9 +5,9 @@ import { fixed, short } from "../files/words";
 import { LinkError, type Parameter } from "../link/declared";
 import { potName, upperFirst } from "../link/refusal";
 import { TABLE } from "../link/schema";
+import { JOINTS } from "../samples/samples";
 import { FULL_SCALE, type Sweep } from "./sweep";
 
-export const JOINTS = 4;
 const COUNT14 = 16; // in a count of the converter
 const ANGLE_SHIFT = 13; // angle = ((count14 - zero) * scale) >> 13
 const SHORTEST_TRACK = Math.PI;

@@ -7,11 +7,11 @@ import { potName, upperFirst } from "../link/refusal";
 import { State, TABLE } from "../link/schema";
 import { button, el, setText, tableHead } from "../parts/dom";
 import type { View } from "../parts/view";
-import { traceOf } from "../samples/samples";
+import { JOINTS, traceOf } from "../samples/samples";
 import type { Session } from "../session";
 import { remarks, type Motor } from "./motors";
 import { Trial } from "./pulses";
-import { apartIn, changesOf, countsOf, JOINTS, jointsInUse, potsOf, requireNoSlip, solve, type Calibration, type Pose } from "./solve";
+import { apartIn, changesOf, countsOf, jointsInUse, potsOf, requireNoSlip, solve, type Calibration, type Pose } from "./solve";
 import { judgeSweep, type Sweep } from "./sweep";
 import { MOTORS_ASKED, POSES, POSES_ASKED, sweepAsked } from "./words";
 

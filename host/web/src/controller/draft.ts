@@ -2,9 +2,9 @@
 
 import { TABLE } from "../link/schema";
 import { Signal } from "../parts/signal";
+import { JOINTS } from "../samples/samples";
 import { SETTING_NAMES, type Settings } from "./law";
 
-export const JOINTS = 4;
 const MOST_STEPS = 200;
 
 type Name = keyof Settings;
@@ -16,11 +16,8 @@ export function parameterName(joint: number, name: Name): string {
 
 /** The four joints of a whole parameter set in raw values. */
 export function jointsOf(raw: readonly number[]): Four {
-  return Array.from({ length: JOINTS }, (_, joint) => {
-    const settings: Partial<Record<Name, number>> = {};
-    for (const name of SETTING_NAMES) settings[name] = raw[TABLE.named(parameterName(joint, name)).index]!;
-    return settings as Settings;
-  });
+  return ofRows(Array.from({ length: JOINTS }, (_, joint) =>
+    SETTING_NAMES.map((name) => raw[TABLE.named(parameterName(joint, name)).index]!)));
 }
 
 /** A whole parameter set with these joints in it. */

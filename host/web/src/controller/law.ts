@@ -11,7 +11,7 @@ export const SETTING_NAMES = [...SET_NAMES, ...FACTOR_NAMES] as const;
 /** One joint's settings as the board stores them: sets in q14, gains in q16, Ku in mV, control periods. */
 export type Settings = Readonly<Record<SetName | FactorName, number>>;
 
-const SET_UNIT = 1 << 14;
+export const SET_UNIT = 1 << 14;
 const GAIN_UNIT = 1 << 16;
 const LEAST_WIDTH = 164; // 0.01, rounded up
 const LARGEST_K = 64 * GAIN_UNIT;

@@ -1,9 +1,9 @@
 // The three fuzzy sets of one input as a picture whose corners can be dragged, or moved by the arrow keys.
 
+import { upperFirst } from "../link/refusal";
 import { svg } from "../parts/dom";
-import { cornerRange, type SetName, type Settings } from "./law";
+import { cornerRange, SET_UNIT, type SetName, type Settings } from "./law";
 
-const SET_UNIT = 1 << 14;
 const WIDTH = 520;
 const HEIGHT = 132;
 const MARGIN = { left: 14, right: 14, top: 20, bottom: 22 };
@@ -13,11 +13,6 @@ const FINE_STEP = 16;
 export type Corners = readonly [negative: SetName, left: SetName, right: SetName, positive: SetName];
 export const ERROR_CORNERS: Corners = ["ne_c", "ze_a", "ze_c", "pe_b"];
 export const CHANGE_CORNERS: Corners = ["nce_c", "zce_a", "zce_c", "pce_b"];
-
-/** The paper's name of a corner: Ne_c. */
-export function paperName(name: SetName): string {
-  return name.slice(0, 1).toUpperCase() + name.slice(1);
-}
 
 function xOf(raw: number): number {
   return MARGIN.left + ((raw / SET_UNIT + 1) / 2) * (WIDTH - MARGIN.left - MARGIN.right);
@@ -50,7 +45,7 @@ export class SetsEditor {
   private handle(name: SetName): SVGGElement {
     const [least, most] = cornerRange(name);
     const handle = svg("g", {
-      class: "handle", tabindex: 0, role: "slider", "aria-label": paperName(name),
+      class: "handle", tabindex: 0, role: "slider", "aria-label": upperFirst(name), // the paper's name: Ne_c
       "aria-valuemin": least / SET_UNIT, "aria-valuemax": most / SET_UNIT,
     }, svg("circle", { class: "reach", r: 16 }), svg("circle", { class: "knob", r: 6 }));
     handle.addEventListener("pointerdown", (event) => {

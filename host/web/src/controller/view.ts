@@ -7,8 +7,9 @@ import { upperFirst } from "../link/refusal";
 import { button, el, select, setText } from "../parts/dom";
 import type { View } from "../parts/view";
 import { physicalText } from "../samples/log";
+import { JOINTS } from "../samples/samples";
 import type { Session } from "../session";
-import { differences, Draft, jointsOf, JOINTS, ofRows, parameterName, rowsOf, withJoints, type Four } from "./draft";
+import { differences, Draft, jointsOf, ofRows, parameterName, rowsOf, withJoints, type Four } from "./draft";
 import { FACTOR_NAMES, refusal, SETTING_NAMES, type FactorName, type Settings } from "./law";
 import { operatingPoints } from "./operating";
 import { PredictPanel } from "./predict_panel";
@@ -302,7 +303,7 @@ function listed(label: string): HTMLUListElement {
 /** Differences as lines: name, mine, then the other's value. */
 function list(into: HTMLElement, mine: Four, other: Four, none: string): void {
   const found = differences(mine, other);
-  into.replaceChildren(...(found.length ? found : []).map(({ name, mine: raw, other: otherRaw }) => {
+  into.replaceChildren(...found.map(({ name, mine: raw, other: otherRaw }) => {
     const parameter = TABLE.named(name);
     return el("li", {}, el("span", {}, name), el("span", {}, `${physicalText(parameter, raw)} (${physicalText(parameter, otherRaw)})`));
   }));

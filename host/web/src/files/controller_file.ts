@@ -1,22 +1,22 @@
 // controller.toml: four joints' sets and gains as a person writes them, checked as greywhale/files/controller.py does, in
 // raw values as a board stores them.
 
-import { cornerRange, FACTOR_NAMES, SET_NAMES, type SetName } from "../controller/law";
+import { cornerRange, FACTOR_NAMES, SET_NAMES, SET_UNIT, type SetName } from "../controller/law";
 import { LinkError, type Parameter } from "../link/declared";
+import { upperFirst } from "../link/refusal";
 import { TABLE } from "../link/schema";
 import type { NamedText } from "../port";
+import { JOINTS } from "../samples/samples";
 import { anyTable, list, number, require, table, text, whole, type Shape, type Toml, type TomlTable } from "./check";
 import { inFile, rawOf } from "./raw_value";
 import { readToml, refuseOtherKind } from "./toml";
 import { short } from "./words";
 
-const JOINTS = 4;
 const MV = 1000; // in a volt: a file has ku in V
 const OF_A_JOINT = ["speed_per_volt", "time_constant", "breakaway_volts"] as const;
 const OF_THE_ARM = ["gravity_1", "gravity_12", "gravity_2"] as const;
 
-/** The paper's name of a corner: Ne_c. */
-const paperName = (name: string): string => name.slice(0, 1).toUpperCase() + name.slice(1);
+const paperName = upperFirst; // of a corner: Ne_c
 const keyOf = (name: string): string => (name === "ku_mv" ? "ku" : name);
 
 /** One number of a joint: its key in the file, its parameter, and its value in the parameter's unit and in the file's. */
@@ -47,7 +47,7 @@ function unfit(found: TomlTable): string {
 
 function corner(name: SetName): Shape {
   // The narrowest flank is 0.01, which the board stores rounded up.
-  const [low, high] = cornerRange(name).map((raw) => Math.trunc((100 * raw) / (1 << 14)) / 100) as [number, number];
+  const [low, high] = cornerRange(name).map((raw) => Math.trunc((100 * raw) / SET_UNIT) / 100) as [number, number];
   return number(low, high);
 }
 

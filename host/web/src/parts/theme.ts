@@ -27,21 +27,14 @@ export function switchTheme(): void {
   apply();
 }
 
-export type Colours = {
-  readonly ink: string;
-  readonly quiet: string;
-  readonly line: string;
-  readonly surface: string;
-  readonly accent: string;
-  readonly joints: readonly string[];
-};
+export type Colours = Readonly<Record<"ink" | "quiet" | "line" | "accent", string>> & { readonly joints: readonly string[] };
 
 /** The colours of page.css as they are now. */
 export function colours(): Colours {
   const style = getComputedStyle(document.documentElement);
   const of = (name: string): string => style.getPropertyValue(`--${name}`).trim();
   return {
-    ink: of("ink"), quiet: of("quiet"), line: of("line"), surface: of("surface"), accent: of("accent"),
+    ink: of("ink"), quiet: of("quiet"), line: of("line"), accent: of("accent"),
     joints: [0, 1, 2, 3].map((joint) => of(`joint-${joint}`)),
   };
 }
