@@ -44,8 +44,8 @@ def seen_by_the_identification(points: np.ndarray, path: Path) -> np.ndarray:
 
 def expected(points: np.ndarray) -> np.ndarray:
     plant = SPACE.plants(X[None])
-    tried = try_motion(points, TABLE, plant, threads=1)
-    return information(plant[0], tried.angles[0], ROW_S, SPACE.parameters).matrix
+    tried = try_motion(points, TABLE, plant)
+    return information(plant[0], tried.angles[0], ROW_S, SPACE.parameters)
 
 
 @pytest.fixture(scope="module")
@@ -95,7 +95,7 @@ def test_a_joint_at_rest_tells_nothing_of_its_motor() -> None:
     points = np.tile(POSE, (400, 1))
     points[:, 2] += 0.5 * np.sin(np.arange(400) * 0.05)
     plant = SPACE.plants(X[None])[0]
-    matrix = information(plant, points, 0.016, SPACE.parameters).matrix
+    matrix = information(plant, points, 0.016, SPACE.parameters)
     size = dict(zip(SPACE.names, np.diag(matrix), strict=True))
     for kind in ("inertia", "damping", "coulomb"):
         assert size[f"joint0.{kind}"] == pytest.approx(0.0, abs=1e-9)
@@ -106,7 +106,7 @@ def test_zero_angles_show_by_gravity_and_backlash_by_reversals() -> None:
     space = Space.of(ARM, ("offset", "gap"), (1, 3))
     plant = space.plants(space.start()[None])[0]
     points = np.tile(POSE, (800, 1)) + 0.8 * np.sin(np.arange(800) * 0.03)[:, None]
-    deviations = np.diag(information(plant, points, 0.016, space.parameters).matrix) ** -0.5
+    deviations = np.diag(information(plant, points, 0.016, space.parameters)) ** -0.5
     assert dict(zip(space.names, deviations < 0.01, strict=True)) == {
         "joint1.offset": True,
         "joint1.gap": True,

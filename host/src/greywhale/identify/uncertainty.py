@@ -117,6 +117,12 @@ def _whose(parameter: Parameter) -> str:
     return f"joint {parameter.joint} ({JOINT_NAMES[parameter.joint]})"
 
 
+def open_beyond(parameter: Parameter) -> float:
+    """The largest standard deviation with which a searched number counts as known."""
+    kind = parameter.kind
+    return OPEN_FACTOR.get(kind, OPEN_LOG) if KINDS[kind].logarithmic else OPEN[kind]
+
+
 def _describe_open(space: Space, x: Floats, deviations: Floats, joints: Sequence[int]) -> list[str]:
     sentences = [
         f"joint {joint} ({JOINT_NAMES[joint]}): it did not move, so nothing of it was identified and the values of the "
@@ -126,8 +132,7 @@ def _describe_open(space: Space, x: Floats, deviations: Floats, joints: Sequence
     ]
     for index, parameter in enumerate(space.parameters):
         kind = KINDS[parameter.kind]
-        most = OPEN_FACTOR.get(parameter.kind, OPEN_LOG) if kind.logarithmic else OPEN[parameter.kind]
-        if deviations[index] <= most:
+        if deviations[index] <= open_beyond(parameter):
             continue
         known = (
             f"known to a factor of {np.exp(min(deviations[index], 7.0)):.2g} only"

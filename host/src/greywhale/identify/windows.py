@@ -45,12 +45,11 @@ class WindowResidual:
         held_out: bool | None = None,
         every: int = 1,
         longest_step: float = STEP_S,
-        most: int = MOST_WINDOWS,
     ) -> None:
-        """At most about `most` windows of the logs, or those held out, or the others; of these, one in `every`."""
+        """At most about MOST_WINDOWS windows of the logs, those held out or the others; of these, one in `every`."""
         self.joints = list(joints)
         self._body = _native.Arm(arm.native()).body
-        parts = [_part(numbers, held_out, every) for numbers in some_windows(logs, most)]
+        parts = [_part(numbers, held_out, every) for numbers in some_windows(logs, MOST_WINDOWS)]
         self._pieces = [(windows_of(log, part, longest_step), log) for part, log in zip(parts, logs, strict=True)]
         self._pieces = [piece for piece in self._pieces if len(piece[0].first)]
         self._logged = tuple(self._pieces)

@@ -11,7 +11,6 @@ import os
 from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
-from functools import partial
 
 import numpy as np
 import numpy.typing as npt
@@ -25,8 +24,8 @@ from greywhale.identify.excite.limits import MARGIN_RAD, Limits, family, limits_
 from greywhale.identify.excite.multisine import LONGEST_S, SHORTEST_S, Shape
 from greywhale.identify.excite.trial import ROW_S, Trial, try_motion
 from greywhale.identify.samples import read_search
-from greywhale.identify.space import KINDS, MOTOR, Parameter, Space
-from greywhale.identify.uncertainty import OPEN, OPEN_FACTOR, OPEN_LOG
+from greywhale.identify.space import MOTOR, Parameter, Space
+from greywhale.identify.uncertainty import open_beyond
 from greywhale.optimise import DEFAULT, create
 from greywhale.protocol.table import ParameterTable
 from greywhale.simulate import plant_row
@@ -77,8 +76,8 @@ class Problem:
 
     def judge(self, angles: Floats) -> Judgement:
         """Judge points (rows, 4) rad, 16 ms apart."""
-        tried = try_motion(angles, self.table, self.plants, threads=1)
-        told = information(self.nominal, tried.angles[0], ROW_S, self.parameters).matrix + self.known
+        tried = try_motion(angles, self.table, self.plants)
+        told = information(self.nominal, tried.angles[0], ROW_S, self.parameters) + self.known
         size = natural_sizes(self.parameters)
         log_det = float(np.linalg.slogdet(told * np.outer(size, size))[1])
         return Judgement(log_det, np.sqrt(np.diag(np.linalg.inv(told))), tried, self._excess(tried))
@@ -116,7 +115,7 @@ class Design:
     def left_open(self) -> list[str]:
         """Names of parameters that this motion will not settle either, by the arm file."""
         rows = zip(self.problem.parameters, self.judgement.deviations, strict=True)
-        return [one.name for one, deviation in rows if deviation > _enough(one)]
+        return [one.name for one, deviation in rows if deviation > open_beyond(one)]
 
     def text(self) -> str:
         """One sentence."""
@@ -176,20 +175,12 @@ def check_effort(seconds: float, budget: int) -> None:
 def _search(problem: Problem, shape: Shape, seed: int, budget: int, report: Progress) -> Floats:
     """The numbers of the best multi-sine. The first one tried has even speeds; a batch is tried side by side."""
     ones = np.ones(shape.size)
-    cost = partial(_cost, problem, shape)
     with (
         create(DEFAULT, -ones, ones, budget=budget, seed=seed, start=np.zeros((1, shape.size))) as optimiser,
         ThreadPoolExecutor(os.cpu_count()) as pool,
     ):
         while not optimiser.done:
-            optimiser.tell(list(pool.map(cost, optimiser.ask())))
+            costs = pool.map(lambda numbers: problem.judge(shape.angles(numbers)).cost, optimiser.ask())
+            optimiser.tell(list(costs))
             report("designing the motion", optimiser.evaluations / budget)
         return optimiser.best.x
-
-
-def _cost(problem: Problem, shape: Shape, numbers: Floats) -> float:
-    return problem.judge(shape.angles(numbers)).cost
-
-
-def _enough(one: Parameter) -> float:
-    return OPEN_FACTOR.get(one.kind, OPEN_LOG) if KINDS[one.kind].logarithmic else OPEN[one.kind]

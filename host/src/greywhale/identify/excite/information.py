@@ -31,36 +31,30 @@ STILL_RAD_S = 0.01
 _STEP = 1e-3  # rad, for the derivative by a zero angle
 
 
-@dataclass(frozen=True)
-class Information:
-    """What motions show about `parameters`: block by block, (n, n) over the searched numbers."""
+def information(plant: Floats, angles: Floats, row_s: float, parameters: Sequence[Parameter]) -> Floats:
+    """What a follower's motion shows about `parameters`, joint by joint, (n, n) over the searched numbers.
 
-    parameters: tuple[Parameter, ...]
-    matrix: Floats
-
-
-def information(plant: Floats, angles: Floats, row_s: float, parameters: Sequence[Parameter]) -> Information:
-    """The information in a follower's motion, angles (rows, 4) rad every `row_s` seconds, on a plant (columns,)."""
-    chosen = tuple(parameters)
+    The motion is angles (rows, 4) rad every `row_s` seconds, on a plant (columns,).
+    """
     velocity = np.gradient(angles, row_s, axis=0)
     acceleration = np.gradient(velocity, row_s, axis=0)
     body = Body.of(plant)
     torque = body.torque(angles, velocity, acceleration)
     inertia = np.diagonal(body.mass_matrix(angles), axis1=1, axis2=2).mean(axis=0)
     rows = round(WINDOW_S / row_s)
-    matrix = np.zeros((len(chosen), len(chosen)))
+    matrix = np.zeros((len(parameters), len(parameters)))
     for joint in range(JOINTS):
-        here = [index for index, one in enumerate(chosen) if one.joint == joint]
+        here = [index for index, one in enumerate(parameters) if one.joint == joint]
         if not here:
             continue
         motion = _Motion(body, plant, joint, angles, velocity, acceleration[:, joint], torque[:, joint])
-        volts = np.column_stack([motion.volts(chosen[index].kind) for index in here])
-        shift = np.column_stack([motion.shift(chosen[index].kind) for index in here])
+        volts = np.column_stack([motion.volts(parameters[index].kind) for index in here])
+        shift = np.column_stack([motion.shift(parameters[index].kind) for index in here])
         push = _response(plant, joint, float(inertia[joint]), rows, row_s)
         seen = push @ _windows(volts, rows) + _windows(shift, rows)
         left = _without_start(plant, joint, float(inertia[joint]), rows, row_s)
         matrix[np.ix_(here, here)] = (seen.transpose(0, 2, 1) @ (left @ seen)).sum(axis=0)
-    return Information(chosen, matrix)
+    return matrix
 
 
 @dataclass(frozen=True)

@@ -28,12 +28,10 @@ class Trial:
     """
 
     angles: Floats
-    reference: Floats  # (rows, 4) rad
     lag: Floats
-    outside: Floats  # (plants, 4) rad: how far the angles leave the range of the reference
 
 
-def try_motion(angles: Floats, table: ParameterTable, plants: Floats, threads: int = 0) -> Trial:
+def try_motion(angles: Floats, table: ParameterTable, plants: Floats) -> Trial:
     """Play points (rows, 4) to arms (n, columns) with the board's parameter table."""
     reference = np.vstack([np.tile(angles[:1], (STILL_TICKS, 1)), board_reference(angles)])
     loop = ClosedLoop(
@@ -50,7 +48,7 @@ def try_motion(angles: Floats, table: ParameterTable, plants: Floats, threads: i
         np.ascontiguousarray(plants),
         substeps=STEPS_PER_TICK,
         every=EVERY,
-        threads=threads,
+        threads=1,
     )
     played = result.angles.astype(np.float64)[:, STILL_TICKS // EVERY :]
     shown = np.nan_to_num(played, nan=1e3, posinf=1e3, neginf=-1e3)
@@ -58,5 +56,4 @@ def try_motion(angles: Floats, table: ParameterTable, plants: Floats, threads: i
     shown = shown[:, : len(wanted)]
     behind = np.abs(shown - wanted[None]).max(axis=2)
     held = np.lib.stride_tricks.sliding_window_view(behind, round(0.05 / ROW_S), axis=1).min(axis=2)
-    outside = np.maximum(shown.max(axis=1) - wanted.max(axis=0), wanted.min(axis=0) - shown.min(axis=1))
-    return Trial(shown, wanted, held.max(axis=1), np.maximum(outside, 0.0))
+    return Trial(shown, held.max(axis=1))
