@@ -65,8 +65,8 @@ def test_corners_keep_to_what_the_board_takes_and_steps_can_be_undone(page: Page
     assert value_of(page, "Pe_b") == pytest.approx(0.01, abs=1e-4)
     page.get_by_role("slider", name="Pe_b", exact=True).press("ArrowRight")
     assert value_of(page, "Pe_b") == pytest.approx(0.02, abs=1e-4)
-    for wanted in (0.01, 0.3):
-        page.get_by_role("button", name="Undo").click()
+    for step, wanted in (("Undo", 0.01), ("Undo", 0.3), ("Redo", 0.01), ("Undo", 0.3)):
+        page.get_by_role("button", name=step).click()
         assert value_of(page, "Pe_b") == pytest.approx(wanted, abs=1e-4)
     expect(page.get_by_role("button", name="Apply")).to_be_disabled()
     place = page.locator("svg.sets").first.bounding_box()
