@@ -55,7 +55,6 @@ void Bench::run_slice() {
   }
   if (shared_) look_at_supply();
   board.run_slice(millivolts_, floating_);
-  ++slices_;
 }
 
 void Bench::drive() {

@@ -25,7 +25,6 @@ class Bench {
 
   // Advances 250 us.
   void run_slice();
-  std::uint64_t slices() const { return slices_; }
 
   Board board;
   Hand hand;
@@ -66,7 +65,6 @@ class Bench {
   bool held_ = false;
   Millivolts millivolts_{};
   Four voltages_{}, follower_{};
-  std::uint64_t slices_ = 0;
 };
 
 }  // namespace greywhale::web
