@@ -57,8 +57,7 @@ class WindowResidual:
         self._places: dict[int, Floats] = {}  # of the pieces for which they were chosen anew
         self.windows = sum(len(windows.first) for windows, _ in self._pieces)
         self.seconds = sum(len(windows.first) * windows.rows * log.period for windows, log in self._pieces)
-        self.clusters = self._clusters()
-        self.joint_of = self._joint_of()
+        self.clusters, self.joint_of = self._places_of_numbers()
 
     def __call__(self, space: Space, points: Floats) -> Floats:
         """(candidates, numbers)."""
@@ -191,24 +190,17 @@ class WindowResidual:
         # A sum is quicker than a look at every number; it is finite where all of them are.
         return error if np.isfinite(error.sum()) else np.nan_to_num(error, nan=1e3, posinf=1e3, neginf=-1e3)
 
-    def _clusters(self) -> NDArray[np.intp]:
-        """The window that each number of the residual belongs to, counted over all logs."""
-        parts, before = [], 0
+    def _places_of_numbers(self) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+        """The window, counted over all logs, and the joint that each number of the residual belongs to."""
+        clusters, joints = [np.zeros(0, dtype=np.intp)], [np.zeros(0, dtype=np.intp)]
+        before = 0
         for windows, _ in self._pieces:
             number = before + np.arange(len(windows.first))
-            readings = np.repeat(number, len(windows.time))
-            parts += [np.concatenate([readings, number, number])] * len(self.joints)
+            numbers = np.concatenate([np.repeat(number, len(windows.time)), number, number])
+            clusters += [numbers] * len(self.joints)
+            joints += [np.full(len(numbers), joint) for joint in self.joints]
             before += len(windows.first)
-        return np.concatenate(parts) if parts else np.zeros(0, dtype=np.intp)
-
-    def _joint_of(self) -> NDArray[np.intp]:
-        """The joint that each number of the residual belongs to."""
-        parts = [
-            np.full(windows.measured[..., 0].size + 2 * len(windows.first), joint)
-            for windows, _ in self._pieces
-            for joint in self.joints
-        ]
-        return np.concatenate(parts) if parts else np.zeros(0, dtype=np.intp)
+        return np.concatenate(clusters), np.concatenate(joints)
 
     def _sides_of(self, windows: Windows) -> Floats:
         """Which teeth touch at a window's start: those that give the torque that the links take."""
