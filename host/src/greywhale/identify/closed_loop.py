@@ -91,11 +91,15 @@ class Loop:
         shown = shown_angles(result.angles, rows, every * TICK_S)[:, LEAD_TICKS // every :] - self._zero
         return shown[:, : len(self.follower[::every])]
 
+    def difference(self, plants: Floats, held_out: bool | None = None) -> Floats:
+        """Candidates minus log, (candidates, rows, 4), rad: over all of it, the held-out part, or the rest."""
+        found = self.angles(plants) - self.follower[None, ::COMPARED_TICKS]
+        kept = found if held_out is None else found[:, part_of(self.rows, ROWS_PER_BLOCK, held_out)]
+        return np.nan_to_num(kept, nan=10.0, posinf=10.0, neginf=-10.0)
+
     def error(self, plants: Floats, held_out: bool | None = None) -> Floats:
-        """Mean squared difference to the log, (candidates, 4), rad²: over all of it, the held-out part, or the rest."""
-        difference = self.angles(plants) - self.follower[None, ::COMPARED_TICKS]
-        kept = difference if held_out is None else difference[:, part_of(self.rows, ROWS_PER_BLOCK, held_out)]
-        mse: Floats = np.mean(np.nan_to_num(kept, nan=10.0, posinf=10.0, neginf=-10.0) ** 2, axis=1)
+        """Mean squared difference to the log, (candidates, 4), rad²."""
+        mse: Floats = np.mean(self.difference(plants, held_out) ** 2, axis=1)
         return mse
 
 
@@ -105,20 +109,14 @@ class LoopResidual:
     def __init__(self, loops: Sequence[Loop], joints: Sequence[int], whole: bool = True) -> None:
         self.loops = loops
         self.joints = list(joints)
-        self.whole = whole
+        self.part = None if whole else False
         rows = [loop.rows if whole else len(part_of(loop.rows, ROWS_PER_BLOCK, False)) for loop in loops]
         self.joint_of = np.tile(np.array(self.joints, dtype=np.intp), sum(rows))
         self.seconds = sum(loop.seconds for loop in loops)
 
     def __call__(self, space: Space, points: Floats) -> Floats:
         plants = space.plants(points)
-        rows = []
-        for loop in self.loops:
-            difference = loop.angles(plants) - loop.follower[None, ::COMPARED_TICKS]
-            if not self.whole:
-                difference = difference[:, part_of(loop.rows, ROWS_PER_BLOCK, False)]
-            kept = difference[..., self.joints]
-            rows.append(np.nan_to_num(kept, nan=10.0, posinf=10.0, neginf=-10.0).reshape(len(points), -1))
+        rows = [loop.difference(plants, self.part)[..., self.joints].reshape(len(points), -1) for loop in self.loops]
         return np.concatenate(rows, axis=1)
 
 
