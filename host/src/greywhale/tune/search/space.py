@@ -127,22 +127,14 @@ class Space:
     @classmethod
     def default(cls, strategy: str, base: Controllers, supply_mv: int, period_ms: int) -> Self:
         """Widths from 0.01 to 1, and factors over decades by their logarithms, Ku up to twice the supply."""
-        highest = {
-            **{name: high for name, (_, high) in _GAIN_RANGE.items()},
-            "Ki": largest_ki(period_ms),
-            "Ku": min(KU_BEYOND * supply_mv, LARGEST_KU_MV) / 1000.0,
-        }
-        lowest = {
-            **{name: low for name, (low, _) in _GAIN_RANGE.items()},
-            "Ki": 0.0,
-            "Ku": min(_LEAST_KU, 0.5 * highest["Ku"]),
-        }
         sets = [Variable(name, *_ordered(name, NARROWEST, 1.0), True) for name in SETS]
-        offset = {"Ki": _SLOW_KI}
+        largest_ku = min(KU_BEYOND * supply_mv, LARGEST_KU_MV) / 1000.0
         gains = [
-            Variable(name, lowest[name], highest[name], name != "Ku", offset=offset.get(name, 0.0)) for name in GAINS
+            *(Variable(name, *sizes, True) for name, sizes in _GAIN_RANGE.items()),
+            Variable("Ki", 0.0, largest_ki(period_ms), True, offset=_SLOW_KI),
+            Variable("Ku", min(_LEAST_KU, 0.5 * largest_ku), largest_ku, False),
+            Variable(CE_TICKS, 1.0, float(MOST_CE_TICKS), True),
         ]
-        gains.append(Variable(CE_TICKS, 1.0, float(MOST_CE_TICKS), True))
         return cls(strategy, _chosen(strategy, sets, gains), base)
 
     @classmethod

@@ -73,10 +73,10 @@ def training_motions(
         "human-like reaches": (human, time_since_move(human, WAIT_S), 1.0),
         SLOW: (slow, _equal_weight(slow, WAIT_S), 1.0),
     }
-    made = []
-    for number, (name, (motion, weight, importance)) in enumerate(classes.items()):
-        made.append(_training_motion(name, motion, weight, importance, arm, table, noise_seed(seed, number)))
-    return tuple(made)
+    return tuple(
+        _training_motion(name, *facts, arm, table, noise_seed(seed, number))
+        for number, (name, facts) in enumerate(classes.items())
+    )
 
 
 def noise_seed(seed: int, number: int) -> int:
@@ -111,22 +111,18 @@ def reach(arm: ArmParameters, table: ParameterTable, plants: Floats) -> tuple[Fl
 
     Both are 0 for a joint that is not in use.
     """
-    low, high = [], []
-    for joint in range(JOINTS):
-        if joint not in arm.joints_in_use:
-            low.append(0.0)
-            high.append(0.0)
-            continue
+    low, high = np.zeros(JOINTS), np.zeros(JOINTS)
+    for joint in arm.joints_in_use:
         limits = [table.physical(f"joint{joint}.limit_{side}") for side in ("min", "max")]
         stops = [plants[:, column(f"stop_{side}", joint)] for side in ("min", "max")]
-        low.append(max(limits[0], float(stops[0].max())) + CLEAR_RAD)
-        high.append(min(limits[1], float(stops[1].min())) - CLEAR_RAD)
-        if high[-1] - low[-1] < LEAST_RANGE_RAD:
+        low[joint] = max(limits[0], float(stops[0].max())) + CLEAR_RAD
+        high[joint] = min(limits[1], float(stops[1].min())) - CLEAR_RAD
+        if high[joint] - low[joint] < LEAST_RANGE_RAD:
             raise BadUsage(
                 f"joint {joint} has no room to move: limits {limits[0]:g} to {limits[1]:g} rad, stops "
                 f"{arm.joint[joint].stops.min:g} to {arm.joint[joint].stops.max:g} rad; correct them."
             )
-    return np.array(low), np.array(high)
+    return low, high
 
 
 def moves(low: Floats, high: Floats, hold_s: float = HOLD_S) -> Trajectory:
