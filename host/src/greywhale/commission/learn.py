@@ -68,13 +68,9 @@ class RoundTuner:
         given = self.options.model if self.fit is None else None
         return self.book.path(f"model-{self.number}.toml") if given is None else given
 
-    def known(self) -> bool:
-        """Whether the journal has it."""
-        return self.book.get(self._name) is not None
-
     def tune(self, report: NotedProgress) -> UnvalidatedTuning | None:
         """Identify the arm and tune for it; None where the journal has both."""
-        if self.known():
+        if self.book.get(self._name) is not None:
             return None
         found = None if self.fit is None else self._find_model(self.fit, report)
         tuning = tune(
