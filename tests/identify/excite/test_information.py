@@ -122,5 +122,4 @@ def test_what_is_known_before_is_a_models_covariance_joint_by_joint() -> None:
     known = prior(parameters, covariance, np.ones(6))
     assert np.allclose(known[:3, :3], np.linalg.inv(covariance[:3, :3]) + np.eye(3), rtol=1e-5)
     assert not known[:3, 3:].any()
-    assert np.array_equal(prior(parameters, None, np.full(6, 0.5)), 4.0 * np.eye(6))
     assert np.array_equal(natural_sizes(parameters), np.ones(6))

@@ -62,16 +62,12 @@ class Problem:
         seed: int,
     ) -> Problem:
         limits = limits_of(arm, table, pose, ranges)
-        facts = arm.identification
-        if facts is not None and "covariance" in facts:
-            space, _, known_covariance = read_search(arm)
-            covariance: Floats | None = known_covariance
-            nominal = plant_row(arm)
+        if "covariance" in (arm.identification or {}):
+            space, _, covariance = read_search(arm)
+            nominal, known = plant_row(arm), prior(space.parameters, covariance, space.doubts())
         else:
             space = Space.of(arm, USUAL, arm.joints_in_use)
-            nominal = space.plants(space.start()[None])[0]
-            covariance = None
-        known = prior(space.parameters, covariance, space.doubts())
+            nominal, known = space.plants(space.start()[None])[0], np.diag(space.doubts() ** -2.0)
         return cls(space.parameters, family(arm, seed), nominal, known, table, limits)
 
     def judge(self, angles: Floats) -> Judgement:

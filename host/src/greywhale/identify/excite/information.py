@@ -145,10 +145,8 @@ def _without_start(plant: Floats, joint: int, inertia: float, rows: int, row_s: 
     return weight * (np.eye(rows) - weight * basis @ np.linalg.solve(normal, basis.T))
 
 
-def prior(parameters: Sequence[Parameter], covariance: Floats | None, doubts: Floats) -> Floats:
-    """The information that is known before: from a model its covariance, from an arm file `doubts` (deviations)."""
-    if covariance is None:
-        return np.diag(doubts**-2.0)
+def prior(parameters: Sequence[Parameter], covariance: Floats, doubts: Floats) -> Floats:
+    """The information that is known before: a model's covariance, and the `doubts` (deviations) of an arm file."""
     known = np.zeros_like(covariance)
     for joint in range(JOINTS):
         here = [index for index, one in enumerate(parameters) if one.joint == joint]

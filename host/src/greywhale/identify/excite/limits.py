@@ -120,7 +120,7 @@ def family(arm: ArmParameters, seed: int = 0) -> Floats:
     For an identified model they are drawn from its covariance. For an arm file their motors are wrong by up to a factor
     of two, and they have friction of their own.
     """
-    if arm.identification is not None and "covariance" in arm.identification:
+    if "covariance" in (arm.identification or {}):
         return sampled_plants(arm, 1 + FAMILY, seed)
     space = Space.of(arm, (*MOTOR, "coulomb"), arm.joints_in_use)
     x = space.start()
