@@ -4,10 +4,9 @@ import { test } from "node:test";
 import { Sample } from "../src/link/schema";
 import { Trigger } from "../src/live/trigger";
 import { TimeWindow } from "../src/live/window";
-import { samplesIn } from "../src/logs/recording";
 import { delay, ripple } from "../src/samples/measures";
 import { draw, emptyPicture } from "../src/samples/picture";
-import { COUNT, Samples, traceOf } from "../src/samples/samples";
+import { COUNT, Samples, samplesIn, traceOf } from "../src/samples/samples";
 
 function sample(tick: number, leader = 0, follower = 0, fault = 0): Uint8Array {
   return Sample.pack({

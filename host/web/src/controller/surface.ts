@@ -1,7 +1,8 @@
 // The control surface of one joint: what the law gives for each error and change, where the arm is on it, which rules fire.
 
 import { el, setText } from "../parts/dom";
-import { infer, RULES, type Inference, type Settings } from "./law";
+import { TICKS_A_SECOND, type Samples } from "../samples/samples";
+import { infer, inputs, RULES, type Inference, type Settings } from "./law";
 
 const CELLS = 72; // a side
 const SIZE = 288; // pixels
@@ -13,6 +14,23 @@ const POSITIVE = [208, 92, 0];
 const TRAIL = 200; // points
 
 export type Point = { readonly x: number; readonly y: number };
+
+const SHOWN_TICKS = TICKS_A_SECOND;
+const EVERY = 5;
+
+/** x and y of the last second of one joint by the settings that run, oldest first. */
+export function operatingPoints(samples: Samples, joint: number, settings: Settings, periodMs: number): Point[] {
+  const back = settings.ce_ticks * periodMs;
+  const first = Math.max(samples.first + back, samples.end - SHOWN_TICKS);
+  const points: Point[] = [];
+  for (let number = samples.end - 1; number >= first; number -= EVERY) {
+    const error = samples.value(number, "error", joint);
+    const change = error - samples.value(number - back, "error", joint);
+    const [x, y] = inputs(error, change, settings, periodMs);
+    points.push({ x, y });
+  }
+  return points.reverse();
+}
 
 export class Surface {
   readonly element: HTMLElement;

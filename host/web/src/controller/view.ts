@@ -11,10 +11,9 @@ import { JOINTS } from "../samples/samples";
 import type { Session } from "../session";
 import { differences, Draft, jointsOf, ofRows, parameterName, rowsOf, withJoints, type Four } from "./draft";
 import { FACTOR_NAMES, refusal, SETTING_NAMES, type FactorName, type Settings } from "./law";
-import { operatingPoints } from "./operating";
 import { PredictPanel } from "./predict_panel";
 import { CHANGE_CORNERS, ERROR_CORNERS, SetsEditor } from "./sets_editor";
-import { Surface } from "./surface";
+import { operatingPoints, Surface } from "./surface";
 import { TunePanel } from "./tune_panel";
 
 const FACTORS: Readonly<Record<FactorName, string>> = {

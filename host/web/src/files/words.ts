@@ -76,5 +76,3 @@ function matching(one: string, other: string): number {
   }
   return 0;
 }
-
-

@@ -136,4 +136,3 @@ export class LiveView implements View {
     return true;
   }
 }
-

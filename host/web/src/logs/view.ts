@@ -7,10 +7,9 @@ import type { Host } from "../host";
 import { Charts } from "../live/charts";
 import { moveByKey, timeButtons } from "../live/time_buttons";
 import { TimeWindow } from "../live/window";
-import { JOINTS, QUANTITIES, QUANTITY_TITLES, TICKS_A_SECOND, type Samples } from "../samples/samples";
+import { JOINTS, QUANTITIES, QUANTITY_TITLES, samplesIn, TICKS_A_SECOND, type Samples } from "../samples/samples";
 import type { Session } from "../session";
 import { LogMeasures } from "./measures";
-import { samplesIn } from "./recording";
 
 const MOST_CHOSEN = 2;
 
