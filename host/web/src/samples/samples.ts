@@ -51,8 +51,9 @@ export class Samples {
   /** Ticks of which no sample came, since the page has been open. */
   lost = 0;
   end = 0;
+  /** The board's own tick of the newest sample, -1 before any. */
+  lastTick = -1;
   private offset = 0;
-  private tick = -1;
 
   /** `capacity` is a multiple of BLOCK; `every` is how many ticks there are from one sample to the next. */
   constructor(readonly capacity = MOST_SAMPLES, readonly every = 1) {
@@ -69,20 +70,15 @@ export class Samples {
     return Math.max(0, Math.ceil((this.end - this.capacity) / BLOCK) * BLOCK);
   }
 
-  /** The board's own tick of the newest sample, -1 before any. */
-  get lastTick(): number {
-    return this.tick;
-  }
-
   /** Takes the payload of one sample. */
   add(payload: Uint8Array): void {
     const view = new DataView(payload.buffer, payload.byteOffset, payload.byteLength);
     const tick = view.getUint32(AT.tick, true);
-    if (this.tick >= 0) {
-      if (tick <= this.tick) this.offset += this.tick + TICKS_A_SECOND - tick;
-      else this.lost += tick - this.tick - 1;
+    if (this.lastTick >= 0) {
+      if (tick <= this.lastTick) this.offset += this.lastTick + TICKS_A_SECOND - tick;
+      else this.lost += tick - this.lastTick - 1;
     }
-    this.tick = tick;
+    this.lastTick = tick;
     const slot = this.end % this.capacity;
     this.time[slot] = this.offset + tick;
     this.state[slot] = view.getUint8(AT.state);

@@ -1,13 +1,11 @@
 // What candidates cost, as `greywhale tune` prices them: greywhale/tune/search/objective.py and judge/margins.py say why.
 
 import type { Drill, TunerData } from "./data";
-import { TICK_S, type Controllers, type Following, type TunerModule } from "./module";
+import { ALL, TICK_S, type Controllers, type Following, type TunerModule } from "./module";
 import { TEETH, Unrests, type Unrest } from "./unrest";
 
 /** An error in rad, and what is measured beside it. */
 type Errors = { readonly error: number; readonly volts: number; readonly rattle: number; readonly chatter: number };
-
-const JOINTS = [0, 1, 2, 3];
 
 export class Costs {
   private readonly drills: readonly number[];
@@ -31,7 +29,7 @@ export class Costs {
     const following = this.follow(candidates);
     const unrest = (refine ? this.refining : this.searching).of(candidates);
     const importances = this.data.drills.reduce((sum, { importance }) => sum + importance, 0);
-    return candidates.map((_, n) => JOINTS.map((joint) => {
+    return candidates.map((_, n) => ALL.map((joint) => {
       const total = this.data.drills.reduce((sum, drill, place) =>
         sum + drill.importance * this.relative(drill, this.before[place]![joint]!, following[place]![n]![joint]!, joint), 0);
       return total / importances + this.penalty(unrest.map(([name, found]) => [name, found[n]![joint]!]), this.quietV[joint]!);

@@ -5,6 +5,7 @@ import type { Row } from "./space";
 import type { Elementary } from "./wolf_whale";
 
 const JOINTS = 4;
+export const ALL = [0, 1, 2, 3]; // of them
 export const TICK_S = 1e-3;
 const SLICES = 4; // of a tick
 export type Controllers = readonly Row[]; // of four joints
@@ -45,17 +46,9 @@ export class TunerModule implements Elementary {
     return this.exports[name]!(...given);
   }
 
-  exp(x: number): number {
-    return this.call("exponential", x);
-  }
-
-  log(x: number): number {
-    return this.call("logarithm", x);
-  }
-
-  cos(x: number): number {
-    return this.call("cosine", x);
-  }
+  readonly exp = (x: number): number => this.call("exponential", x);
+  readonly log = (x: number): number => this.call("logarithm", x);
+  readonly cos = (x: number): number => this.call("cosine", x);
 
   private give(numbers: readonly number[]): void {
     const at = this.call("give", numbers.length);

@@ -1,12 +1,10 @@
 // The search of `greywhale tune` (greywhale/tune/default.py and search/lockstep.py): four optimisers in lockstep, in stages.
 
 import type { SearchData, Stage } from "./data";
-import type { Controllers } from "./module";
+import { ALL, type Controllers } from "./module";
 import { Random } from "./random";
 import { rint, Space, type Row } from "./space";
 import { clip, latinHypercube, WolfWhale, type Elementary } from "./wolf_whale";
-
-const JOINTS = [0, 1, 2, 3];
 
 export type Found = {
   readonly best: Controllers;
@@ -17,7 +15,7 @@ export type Found = {
 
 export class Search implements Found {
   best: Row[];
-  cost: number[] = JOINTS.map(() => Infinity);
+  cost: number[] = ALL.map(() => Infinity);
   evaluations = 0;
   readonly curve: [number, number[]][] = [];
   private refines = false; // after the first stage
@@ -47,14 +45,14 @@ export class Search implements Found {
 
   /** Judges the best of all joints together anew: what neighbours do counts, and by now they do better. */
   private tryAgain(): Found {
-    this.cost = JOINTS.map(() => Infinity);
-    return this.take([[...this.best]], JOINTS.map(() => 1));
+    this.cost = ALL.map(() => Infinity);
+    return this.take([[...this.best]], ALL.map(() => 1));
   }
 
   private *runStage(stage: Stage, budget: number): Generator<Found, void> {
     const { how } = this;
     const space = new Space(how, how.spaces[stage.space], stage.space === "reduced", this.math);
-    const packs = JOINTS.map((joint) => {
+    const packs = ALL.map((joint) => {
       const random = new Random(stage.random[joint]!);
       const start = space.point(this.best[joint]!);
       const pack = stage.sigma === null ? [start] : surrounded(space, start, stage.sigma, random, how.pack);
@@ -78,7 +76,7 @@ export class Search implements Found {
   private take(rows: readonly Controllers[], counts: readonly number[], packs: readonly WolfWhale[] = []): Found {
     const costs = this.costs(rows, this.refines);
     this.evaluations += rows.length;
-    for (const joint of JOINTS) {
+    for (const joint of ALL) {
       const told = costs.slice(0, counts[joint]).map((row) => row[joint]!);
       told.forEach((cost, n) => {
         if (!(cost < this.cost[joint]!)) return;
