@@ -38,6 +38,7 @@ from greywhale.tune.request import TuningRequest
 from greywhale.tune.search.journal import TuningJournal
 from greywhale.tune.search.lockstep import SearchState, search_in_lockstep
 from greywhale.tune.search.space import Space
+from greywhale.tune.search.training import tick_times
 
 METHOD = "gwo-woa"
 AGENTS = 10
@@ -141,9 +142,7 @@ def time_since_step(motion: Trajectory, wait_s: float) -> Floats:
     """The k of Eqs. 19 and 20 at every tick: the time since the leader left its first angle, 0 before."""
     elsewhere = np.flatnonzero(np.abs(motion.angles - motion.angles[0]).max(axis=1) > 1e-9)
     leaves = float(motion.time_s[elsewhere[0] - 1])
-    ticks = int(np.ceil((wait_s + motion.duration_s) / 1e-3 - 1e-9))
-    since: Floats = np.maximum(np.arange(ticks) * 1e-3 - wait_s - leaves, 0.0)
-    return since
+    return np.maximum(tick_times(motion, wait_s) - leaves, 0.0)
 
 
 def _notes(found: SearchState, strategy: str, loops: Loops) -> tuple[str, ...]:

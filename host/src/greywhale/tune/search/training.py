@@ -71,7 +71,7 @@ def training_motions(
     classes = {
         "moves to both sides": (large, time_since_move(large, WAIT_S), 2.0),
         "human-like reaches": (human, time_since_move(human, WAIT_S), 1.0),
-        SLOW: (slow, _equal_weight(slow, WAIT_S), 1.0),
+        SLOW: (slow, np.where(tick_times(slow, WAIT_S) < 0.0, 0.0, 1.0), 1.0),
     }
     return tuple(
         _training_motion(name, *facts, arm, table, noise_seed(seed, number))
@@ -189,13 +189,12 @@ def time_since_move(motion: Trajectory, wait_s: float) -> Floats:
 
 def moving_ticks(motion: Trajectory, wait_s: float) -> tuple[Floats, NDArray[np.bool_]]:
     """When every tick of an Experiment that waits `wait_s` is (s), and whether the leader then moves."""
-    ticks = int(np.ceil((wait_s + motion.duration_s) / 1e-3 - 1e-9))
-    time_s: Floats = np.arange(ticks, dtype=np.float64) * 1e-3 - wait_s
+    time_s = tick_times(motion, wait_s)
     change = np.abs(motion.at(time_s) - motion.at(time_s - MOVING_S)).max(axis=1)
     return time_s, change > MOVING_RAD
 
 
-def _equal_weight(motion: Trajectory, wait_s: float) -> Floats:
-    """The same weight for every tick of an Experiment that waits `wait_s`; 0 while it waits."""
+def tick_times(motion: Trajectory, wait_s: float) -> Floats:
+    """When every tick of an Experiment that waits `wait_s` is, s; below 0 while it waits."""
     ticks = int(np.ceil((wait_s + motion.duration_s) / 1e-3 - 1e-9))
-    return np.where(np.arange(ticks) * 1e-3 < wait_s, 0.0, 1.0)
+    return np.arange(ticks, dtype=np.float64) * 1e-3 - wait_s
