@@ -25,7 +25,7 @@ export class ControllerView implements View {
   readonly element = el("div", { class: "controller" });
   private draft: Draft | null = null;
   private running: Four | null = null; // as they were taken last
-  private joint = 0;
+  shownJoint = 0;
   private busy = false;
   private compared: { name: string; joints: Four } | null = null;
   private kept: Four | null = null; // B, while A is edited, and the other way round
@@ -56,7 +56,7 @@ export class ControllerView implements View {
   /** `tuner` searches within the page, where no host has a verb for it. */
   constructor(private readonly session: Session, private readonly host: Host | null, tuner: Tuner | null = null) {
     const moved = (name: keyof Settings, raw: number, grip: string): void =>
-      this.draft?.set(this.joint, name, raw, grip && `${this.joint} ${grip}`);
+      this.draft?.set(this.shownJoint, name, raw, grip && `${this.shownJoint} ${grip}`);
     const letGo = (): void => this.draft?.letGo();
     this.errorSets = new SetsEditor("Sets of the error", ["NE", "ZE", "PE"], ERROR_CORNERS, moved, letGo);
     this.changeSets = new SetsEditor("Sets of the change of error", ["NCE", "ZCE", "PCE"], CHANGE_CORNERS, moved, letGo);
@@ -139,28 +139,24 @@ export class ControllerView implements View {
     this.files.value = chosen;
   }
 
-  get shownJoint(): number {
-    return this.joint;
-  }
-
   showJoint(joint: number): void {
-    this.joint = joint;
+    this.shownJoint = joint;
     this.predict?.showJoint(joint);
     this.tune?.showJoint(joint);
     this.show();
   }
 
   private typed(name: FactorName): void {
-    const parameter = TABLE.named(parameterName(this.joint, name));
+    const parameter = TABLE.named(parameterName(this.shownJoint, name));
     const input = this.factors.get(name)!;
     const raw = Math.round(Number(input.value) / parameter.lsb);
     if (input.value === "" || !(raw >= parameter.minimum && raw <= parameter.maximum)) {
       const [low, high] = [parameter.minimum, parameter.maximum].map((one) => physicalText(parameter, one));
-      this.session.tell(`${parameter.name.replace("0", String(this.joint))} is ${input.value || "empty"}; choose a value from ${low} to ${high}.`);
+      this.session.tell(`${parameter.name.replace("0", String(this.shownJoint))} is ${input.value || "empty"}; choose a value from ${low} to ${high}.`);
       this.show();
       return;
     }
-    this.draft?.set(this.joint, name, raw);
+    this.draft?.set(this.shownJoint, name, raw);
   }
 
   private discard(): void {
@@ -209,14 +205,14 @@ export class ControllerView implements View {
     if (!draft || !parameters) return;
     this.reading.hidden = true;
     this.editor.hidden = false;
-    const settings = draft.joints[this.joint]!;
-    this.tabs.forEach((tab, joint) => tab.setAttribute("aria-pressed", String(joint === this.joint)));
+    const settings = draft.joints[this.shownJoint]!;
+    this.tabs.forEach((tab, joint) => tab.setAttribute("aria-pressed", String(joint === this.shownJoint)));
     this.errorSets.show(settings);
     this.changeSets.show(settings);
     this.surface.show(settings);
     for (const name of FACTOR_NAMES) {
       const input = this.factors.get(name)!;
-      if (document.activeElement !== input) input.value = physicalText(TABLE.named(parameterName(this.joint, name)), settings[name]);
+      if (document.activeElement !== input) input.value = physicalText(TABLE.named(parameterName(this.shownJoint, name)), settings[name]);
     }
     list(this.toBoard, draft.joints, jointsOf(parameters), "The board runs these controllers.");
     this.showStored(draft.joints);
@@ -274,9 +270,9 @@ export class ControllerView implements View {
   frame(): void {
     const { parameters, samples } = this.session;
     if (!parameters || !this.draft) return;
-    const running = jointsOf(parameters)[this.joint]!;
-    const points = operatingPoints(samples, this.joint, running, this.periodMs(parameters));
-    const settings = this.draft.joints[this.joint]!;
+    const running = jointsOf(parameters)[this.shownJoint]!;
+    const points = operatingPoints(samples, this.shownJoint, running, this.periodMs(parameters));
+    const settings = this.draft.joints[this.shownJoint]!;
     this.surface.showPoints(points, settings);
     const now = points.at(-1);
     this.errorSets.showPoint(now ? now.x : null);

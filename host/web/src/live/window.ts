@@ -12,7 +12,7 @@ export const ZOOM_STEP = 1.6;
 
 export class TimeWindow {
   readonly changed = new Signal();
-  private span = 10 * TICKS_A_SECOND;
+  spanTicks = 10 * TICKS_A_SECOND;
   private held: number | null = null; // the end while it does not move, in ticks
 
   constructor(private readonly extent: Extent, private readonly longest = LONGEST_TICKS) {}
@@ -21,16 +21,12 @@ export class TimeWindow {
     return this.held === null;
   }
 
-  get spanTicks(): number {
-    return this.span;
-  }
-
   get end(): number {
     return this.held ?? this.extent.lastTime;
   }
 
   get begin(): number {
-    return this.end - this.span;
+    return this.end - this.spanTicks;
   }
 
   hold(): void {
@@ -48,33 +44,37 @@ export class TimeWindow {
     else this.follow();
   }
 
+  private possible(span: number): number {
+    return Math.max(SHORTEST_TICKS, Math.min(this.longest, span));
+  }
+
   setSpan(ticks: number): void {
-    this.span = Math.max(SHORTEST_TICKS, Math.min(this.longest, ticks));
+    this.spanTicks = this.possible(ticks);
     this.changed.emit();
   }
 
   /** Shows from `begin` to `end` and stays there. */
   show(begin: number, end: number): void {
-    this.span = Math.max(SHORTEST_TICKS, Math.min(this.longest, end - begin));
-    this.held = begin + this.span;
+    this.spanTicks = this.possible(end - begin);
+    this.held = begin + this.spanTicks;
     this.changed.emit();
   }
 
   /** Zooms by a factor about a time that keeps its place; without one, about the end while live, else the middle. */
   zoom(factor: number, about?: number): void {
     if (this.held === null) {
-      this.setSpan(this.span * factor);
+      this.setSpan(this.spanTicks * factor);
       return;
     }
     const fixed = about ?? (this.begin + this.held) / 2;
-    const share = (fixed - this.begin) / this.span;
-    const span = Math.max(SHORTEST_TICKS, Math.min(this.longest, this.span * factor));
+    const share = (fixed - this.begin) / this.spanTicks;
+    const span = this.possible(this.spanTicks * factor);
     this.show(fixed - share * span, fixed + (1 - share) * span);
   }
 
   /** Moves by a share of the span; moving past the newest sample follows it again. */
   pan(share: number): void {
-    const end = this.end + share * this.span;
+    const end = this.end + share * this.spanTicks;
     if (end >= this.extent.lastTime) {
       this.follow();
       return;
