@@ -18,6 +18,7 @@ import numpy as np
 from greywhale.base.types import Floats, PerJoint
 from greywhale.commission.motions import PARTS, Check
 from greywhale.files.log import Log
+from greywhale.identify.data import at
 from greywhale.motion.runs import REST_RAD, REST_S, resting
 from greywhale.motion.step_response import answer, departures, worst
 from greywhale.motion.swings import (
@@ -101,7 +102,7 @@ class Measures:
 def traces_of(log: Log, check: Check) -> Traces:
     """A log on an even grid, and where the check begins in it: the leader's columns are the check, some time later."""
     time_s: Floats = np.arange(0.0, float(log.time[-1]), TICK_S)
-    leader, follower, voltage = (_at(time_s, log.time, values) for values in (log.leader, log.follower, log.voltage))
+    leader, follower, voltage = (at(time_s, log.time, values) for values in (log.leader, log.follower, log.voltage))
     return Traces(leader, follower, voltage, _begin(leader, check))
 
 
@@ -146,10 +147,6 @@ def step_answers(leader: Floats, follower: Floats) -> tuple[Floats, Floats]:
         answers = [answer(led, followed, rest, step, TICK_S) for step in departures(led, rest, TICK_S)]
         found[:, joint] = [np.nan if one is None else one for one in worst([one for one in answers if one is not None])]
     return found[0], found[1]
-
-
-def _at(times: Floats, known: Floats, values: Floats) -> Floats:
-    return np.column_stack([np.interp(times, known, values[:, joint]) for joint in range(JOINTS)])
 
 
 def _begin(leader: Floats, check: Check) -> float:
