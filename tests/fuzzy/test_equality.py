@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import fields
+from dataclasses import fields, replace
 
 import numpy as np
 import pytest
@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from greywhale.fuzzy import twin
-from greywhale.fuzzy.settings import JointSettings
-from tests.fuzzy.conftest import Case, Points
+from greywhale.fuzzy.settings import JointSettings, load_joints
+from tests.fuzzy.conftest import TABLES, Case, Points
 
 
 @pytest.mark.slow
@@ -67,6 +67,20 @@ def test_whole_trajectories(cases: st.SearchStrategy[Case], data: st.DataObject)
         else:
             native.reset()
             ours.reset()
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+def test_the_integral_stops_at_its_ends(sign: int) -> None:
+    """While an error shrinks, the proportional part pulls back with all its 30 V, so no limit stops the integral."""
+    settings = replace(load_joints(TABLES / "before_tuning.toml")[0], kp=0, kd=64 << 16, ki=20 << 16, ku_mv=30_000)
+    error = np.concatenate([[32767], np.arange(32000, 3000, -200)])
+    leader, follower = (error, np.zeros_like(error))[::sign]
+    limit = np.full(len(error), 30_000)
+    got = settings.controller(4).run(leader.astype(np.int16), follower.astype(np.int16), limit.astype(np.uint16))
+    expected = twin.Controller(settings, 4).run(leader, follower, limit)
+    reached = (int(got["integral"][-1]) << 16) + int(got["fraction"][-1])
+    assert reached == expected.integral[-1] == (twin.INTEGRAL_END - 1 if sign > 0 else -twin.INTEGRAL_END)
+    np.testing.assert_array_equal(got["volts_mv"], expected.volts_mv)
 
 
 def test_the_paper_s_controllers_over_a_plane(paper_joints: tuple[JointSettings, ...]) -> None:
