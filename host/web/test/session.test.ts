@@ -1,6 +1,6 @@
 // What all views share of a board, over a board that answers at once.
 import assert from "node:assert/strict";
-import { mock, test } from "node:test";
+import { test } from "node:test";
 import type { Board, BoardListener } from "../src/board";
 import { encodeFrame, FrameDecoder } from "../src/link/frames";
 import {
@@ -11,7 +11,7 @@ import { Session } from "../src/session";
 const zeros = (size: number): Uint8Array => new Uint8Array(size);
 const settled = (): Promise<void> => new Promise((done) => setImmediate(done));
 
-test("a set that another program stored is shown, whichever tells of it first: its CRC or the status", async () => {
+test("a set that another program stored is shown, whichever tells of it first: its CRC or the status", async ({ mock }) => {
   mock.timers.enable({ apis: ["setInterval", "setTimeout"] });
   const values = TABLE.parameters.map(({ initial }) => initial);
   let saves = 0;
