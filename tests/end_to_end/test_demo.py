@@ -10,7 +10,7 @@ import pytest
 
 from greywhale.arm.parameters import JOINT_NAMES
 from greywhale.base.errors import UserError
-from greywhale.cli.story import BenchProcess, DemoOptions, DemoResult, run, story
+from greywhale.cli.story import BenchProcess, DemoOptions, DemoResult, practice, run, story
 from greywhale.cli.story.recorder import record_motion
 from greywhale.commission import motions, search
 from greywhale.files.leader import save_leader
@@ -20,7 +20,7 @@ from greywhale.files.trajectory import Trajectory
 from greywhale_sim.words import lock_step
 from tests.support.arms import make_arm, with_joints
 from tests.support.demo import in_this_process
-from tests.support.tuning import judge_nothing, shorten
+from tests.support.tuning import few_plants, judge_nothing, shorten
 from tools import ROOT
 
 
@@ -32,6 +32,8 @@ def test_the_demo_tells_its_story_and_proves_its_controllers_on_the_arm(
     in_this_process(monkeypatch)
     shorten(monkeypatch)
     judge_nothing(monkeypatch)
+    few_plants(monkeypatch)
+    monkeypatch.setattr(practice, "DESIGN_BUDGET", 30)
     monkeypatch.setattr(story, "PROVING_TRIALS", 1)
     monkeypatch.setattr(search, "PACKS", ((0.1, 12),))
     monkeypatch.setattr(search, "POOR", 1e9)
@@ -42,7 +44,7 @@ def test_the_demo_tells_its_story_and_proves_its_controllers_on_the_arm(
     told: list[str] = []
     out = tmp_path / "new" / "demo"
     options = DemoOptions(
-        out, arm=arm_with_joints(1, tmp_path), duration_s=4.0, practice_s=10.0, budget=200, prove=True
+        out, arm=arm_with_joints(1, tmp_path), duration_s=4.0, practice_s=10.0, budget=100, prove=True
     )
     result = run(options, lambda what, fraction, note="": told.append(what))
     recordings = ["before", "after", "proven", "practice", "check", "check_changed"]

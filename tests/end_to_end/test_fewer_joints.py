@@ -92,7 +92,8 @@ def test_two_joints_on_a_nano_from_the_box_to_a_following_arm(
         assert not any("joint 1" in sentence or "joint 3" in sentence for sentence in told["not_identified"])
         assert load_model(Path("model.toml")).table.board is Board.NANO328
         told = ask(
-            capsys, "tune", "model.toml", "--budget", "300", "--arm", "mine.toml", "-o", "controller.toml",
+            capsys, "tune", "model.toml", "--budget", "150", "--samples", "2", "--arm", "mine.toml", "-o",
+            "controller.toml",
         )  # fmt: skip
         assert 'board = "nano328"' in Path("controller.toml").read_text()
         doubts = ask(capsys, "upload", "controller.toml", *port)["warnings"]

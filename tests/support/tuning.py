@@ -10,9 +10,9 @@ from functools import partial
 import numpy as np
 import pytest
 
-from greywhale.identify import bootstrap
+from greywhale.identify import bootstrap, sampled_plants
 from greywhale.motion import human_reaches
-from greywhale.tune import default
+from greywhale.tune import default, model
 from greywhale.tune.judge import held_out
 from greywhale.tune.judge.margins import REST_S, Margins
 from greywhale.tune.possible import scale_of
@@ -52,3 +52,8 @@ def judge_nothing(patch: pytest.MonkeyPatch) -> None:
     """For tests of what is chosen: nothing is said of its margins and of motions on which nothing was tuned."""
     patch.setattr(Margins, "check", lambda margins, controllers: ())
     patch.setattr(default, "judge_held_out", lambda *arguments: ())
+
+
+def few_plants(patch: pytest.MonkeyPatch) -> None:
+    """For tests of more than a tuning: a model stands for few arms beside its own."""
+    patch.setattr(model, "sampled_plants", lambda arm, samples, seed: sampled_plants(arm, min(samples, 2), seed))
