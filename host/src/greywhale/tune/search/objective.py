@@ -34,7 +34,7 @@ from greywhale.protocol.firmware import JOINTS
 from greywhale.simulate import Result
 from greywhale.tune.search.training import WAIT_S, TrainingMotion
 
-RMS = 1.5
+RMS = 6.0
 RATTLE = 3.0
 LOUDER = 3.0
 # Rattling below this (rad) is never louder: a board's angle has steps of a quarter of it.
