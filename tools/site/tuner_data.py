@@ -76,9 +76,9 @@ def tuner_data() -> dict[str, Any]:
         "drills": _drills(model),
         "shown": SHOWN,
         "rests": {
-            "searching": _rests(model, margins.REST_S, 0, margins.SEARCH_BEYOND, swings.SEARCH_BAND_RAD),
-            "refining": _rests(model, margins.REST_LONG_S, 0, margins.SEARCH_BEYOND, swings.SEARCH_BAND_RAD),
-            "judging": _rests(model, margins.REST_LONG_S, 1, 1.0, swings.LIMIT_CYCLE.band_rad),
+            "searching": _rests(model, margins.REST_S, 0, margins.SEARCH_BEYOND, swings.SEARCH_CYCLE),
+            "refining": _rests(model, margins.REST_LONG_S, 0, margins.SEARCH_BEYOND, swings.SEARCH_CYCLE),
+            "judging": _rests(model, margins.REST_LONG_S, 1, 1.0, swings.LIMIT_CYCLE),
         },
         "rattle": _rattle(),
         "prices": _prices(),
@@ -123,14 +123,15 @@ def _drills(model: Model) -> list[dict[str, Any]]:
     return told
 
 
-def _rests(model: Model, rest_s: float, noise: int, beyond: float, band_rad: float) -> dict[str, Any]:
+def _rests(model: Model, rest_s: float, noise: int, beyond: float, cycle: swings.Hunting) -> dict[str, Any]:
     motion = margins.stops(*training.reach(model.arm, model.table, model.plants), rest_s)
     return {
         "steps": steps_of(motion),
         "noise": _noise(margins.noise_seed(SEED, noise)),
         "ticks": margins.rest_ticks(rest_s),
         "variants": {name: rows[0].tolist() for name, rows in margins.variants_of(model.plants, beyond).items()},
-        "band": band_rad,
+        "band": cycle.band_rad,
+        "turns": cycle.turns,
     }
 
 
@@ -161,7 +162,6 @@ def _prices() -> dict[str, float]:
         "chatter_moving_hz": swings.CHATTER_MOVING_HZ,
         "effort": objective.EFFORT,
         "lost": objective.LOST,
-        "limit_cycle_turns": swings.LIMIT_CYCLE.turns,
         "chatter_at_rest_hz": swings.CHATTER_AT_REST_HZ,
         "quiet_share": swings.QUIET_SHARE,
         "search_ripple": margins.SEARCH_RIPPLE,

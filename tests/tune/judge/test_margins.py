@@ -19,7 +19,6 @@ from greywhale.tune.judge.margins import (
     SCENARIOS,
     TEETH,
     Margins,
-    compose_hard_plant,
     penalty,
     with_gain,
     with_softer_teeth,
@@ -159,16 +158,3 @@ def test_rigid_gears_stay_rigid() -> None:
     rigid[:, columns("half_gap") + columns("stiffness") + columns("mesh_damping")] = 0.0
     found = Margins(ARM, ParameterTable.defaults(), rigid).unrest(BEFORE[None])
     assert not any(one.lost.any() for one in found.values())
-
-
-def test_the_hard_plant_has_each_joint_as_it_fails_most_and_nothing_that_was_searched() -> None:
-    """The search knows the first two plants. Joint 0 fails most on the third, 1 and 2 on the second, 3 nowhere."""
-    plants = np.repeat(PLANTS, 4, axis=0)
-    plants[:, columns("coulomb")] *= np.array([1.0, 0.9, 0.8, 0.7])[:, None]
-    fails = np.array([[0, 0, 0, 0], [1, 5, 3, 0], [4, 1, 0, 0], [2, 2, 0, 0]])
-    hard = compose_hard_plant(plants, plants[:2], fails)
-    assert hard is not None
-    expected = plants[0].copy()
-    expected[columns("coulomb")] = plants[[2, 3, 0, 0], columns("coulomb")]
-    np.testing.assert_array_equal(hard, expected)
-    assert compose_hard_plant(plants, plants[1:], fails) is None

@@ -45,10 +45,6 @@ def columns(name: str) -> list[int]:
     return [column(name, joint) for joint in range(JOINTS)]
 
 
-def joint_columns(joint: int) -> list[int]:
-    return [place for place, name in enumerate(PLANT_COLUMNS) if name.startswith(f"joint{joint}.")]
-
-
 def plant_row(parameters: ArmParameters) -> Plants:
     """An arm as one row: float64 (columns,), in the order of PLANT_COLUMNS."""
     return np.asarray(_native.plant_row(parameters.native()), dtype=np.float64)

@@ -45,7 +45,7 @@ class Hunting:
 
 # A limit cycle in the rest after a move, in simulations and in a log that ended in hunting.
 LIMIT_CYCLE = Hunting(0.01, 3)
-SEARCH_BAND_RAD = 0.005  # a search keeps clear of the border: smaller swings already cost
+SEARCH_CYCLE = Hunting(0.005, 2)  # a search keeps clear of the border: fewer and smaller swings already cost
 # What nobody can overlook: while an arm is led, the motors go off.
 VIOLENT = Hunting(0.03, 4)
 CHATTER_AT_REST_HZ = 50.0

@@ -9,7 +9,10 @@
 3. `every corner`: a narrow search from there, in which each corner and factor is free.
 4. The best few of every joint are judged anew, on all plants and with other noise (`judge/choose.py`). The controller
    from before the tuning competes too, and the bench's own arithmetic has the last word, so no joint ends worse than it
-   began. A joint that falls short there is searched once more, on all plants.
+   began. A joint that falls short there is searched once more.
+
+Margins are looked at on the search's two plants alone. Of many drawn arms the softest would decide, and it is softer
+than any arm that was recorded.
 """
 
 from __future__ import annotations
@@ -32,7 +35,7 @@ from greywhale.protocol.joints import unused
 from greywhale.protocol.table import CONTROLLER_COLUMNS
 from greywhale.tune.judge.choose import FAIR, Judge, Remembering, choose, next_best
 from greywhale.tune.judge.held_out import judge_held_out
-from greywhale.tune.judge.margins import MOVING, REST_LONG_S, Margin, Margins, compose_hard_plant, penalty
+from greywhale.tune.judge.margins import MOVING, REST_LONG_S, Margin, Margins, penalty
 from greywhale.tune.judge.standard import Standard
 from greywhale.tune.method import Costs, Judgement
 from greywhale.tune.model import Model
@@ -69,7 +72,7 @@ STAGES = (
 # What joints get that fall short in the last judgement, beyond the budget, and what a failure costs there.
 AGAIN = Stage("again", 0.06, 0.05, lockstep.TOGETHER)
 STRICT_PRICE = 0.6
-# The search tracks on so many plants, the estimate first; the last judgement uses all.
+# The search tracks on so many plants, the estimate first; of the last judgement, the errors use all.
 SEARCH_PLANTS = 2
 FULL_PACK = 16  # on two plants: that fills the lanes of the simulation twice
 SHORT_BUDGET = 1000  # evaluations; below that, more rounds of a smaller pack find more
@@ -103,10 +106,10 @@ class DefaultMethod:
         other_noise = self._motions(task.seed + JUDGING_SEED)
         self.judging = Objective(other_noise, model.plants, scale, task.threads)
         # Longer and with other noise, since a search learns its own noise by heart.
-        self.judging_margins = self._margins(model.plants, rest_s=REST_LONG_S, noise=1)
+        self.judging_margins = self._margins(rest_s=REST_LONG_S, noise=1)
         # With bounds, what is uploaded keeps within them, whatever ran before.
         self.start = self.space.controllers(self.space.points(task.before[None]))[0] if task.bounds else task.before
-        self.margins = self._margins(some, searching=True)
+        self.margins = self._margins(searching=True)
         self.margins_before = self.judging_margins.check(self.start)
         self.standard = Standard.of(self.margins_before, self.table.supply_v, task.quiet)
         self.found = SearchState.nothing(self.start)
@@ -117,8 +120,8 @@ class DefaultMethod:
             return training_motions(arm, self.table, plants, seed)
         return (own_motion(self.task.motion, arm, self.table, plants, seed),)
 
-    def _margins(self, plants: Floats, **options: Any) -> Margins:
-        task = self.task
+    def _margins(self, **options: Any) -> Margins:
+        task, plants = self.task, self.objective.plants
         return Margins(self.model.arm, self.table, plants, threads=task.threads, seed=task.seed, **options)
 
     def facts(self) -> dict[str, Any]:
@@ -143,22 +146,13 @@ class DefaultMethod:
         lockstep.try_again(self.costs, self.found, journal, "start")
         for number, stage in enumerate(STAGES, 1):
             if number > 1:
-                self._add_hard_plant()
+                self.margins = self._margins(searching=True, rest_s=REST_LONG_S)  # an integral swings slowly
             left = task.budget - self.found.evaluations
             share = left if stage is STAGES[-1] else min(left, round(stage.share * task.budget))
             if number > 1 and share > len(stage.groups):
                 lockstep.try_again(self.costs, self.found, journal, stage.name)
                 share -= 1
             self._run(stage, number, share // len(stage.groups), self.costs, self.found, journal, tick)
-
-    def _add_hard_plant(self) -> None:
-        """From now on the margins are looked at also on a plant that has each joint as it fails most of them, and in
-        longer rests: an integral swings slowly.
-        """
-        fails = np.sum([one.fails[0] for one in self.judging_margins.unrest(self.found.best[None]).values()], axis=0)
-        hard = compose_hard_plant(self.model.plants, self.margins.plants, fails)
-        plants = self.margins.plants if hard is None else np.vstack([self.margins.plants, hard])
-        self.margins = self._margins(plants, searching=True, rest_s=REST_LONG_S)
 
     def _run(
         self,
@@ -254,12 +248,11 @@ class DefaultMethod:
     def _search_again(self, rows: Controllers, short: Flags) -> Controllers:
         """The best few (k, 4, 13) of a last search for joints that fall `short` (4,) beside the others of `rows`.
 
-        It looks at the margins on every plant, and a failure costs more than in the search before.
+        A failure costs more than in the search before.
         """
-        margins = self._margins(self.model.plants, searching=True, rest_s=REST_LONG_S)
 
         def costs(controllers: Controllers) -> Floats:
-            restless = penalty(margins.unrest(controllers), self.standard.quiet_v, STRICT_PRICE)
+            restless = penalty(self.margins.unrest(controllers), self.standard.quiet_v, STRICT_PRICE)
             return self.objective.costs(controllers) + restless
 
         found, journal = SearchState.nothing(rows), TuningJournal(None, {})

@@ -26,6 +26,7 @@ export type Rests = {
   readonly ticks: readonly (readonly [number, number])[];
   readonly variants: Readonly<Record<string, readonly number[]>>; // the arm in each scenario
   readonly band: number; // rad
+  readonly turns: number; // so many are hunting
 };
 
 /** A searched number; `mirror` is another column that gets the same size with the other sign. */
@@ -67,7 +68,7 @@ export type SearchData = {
 
 export type Price =
   | "soon_s" | "rms" | "rattle" | "louder" | "quiet_rad" | "chatter_moving" | "bearable" | "chatter_moving_hz" | "effort"
-  | "lost" | "limit_cycle_turns" | "chatter_at_rest_hz" | "quiet_share" | "search_ripple" | "search_chatter" | "travel"
+  | "lost" | "chatter_at_rest_hz" | "quiet_share" | "search_ripple" | "search_chatter" | "travel"
   | "chatter_at_rest" | "fail" | "teeth" | "ripple" | "loud" | "lost_at_rest" | "same" | "shaken";
 
 export type TunerData = {

@@ -36,20 +36,21 @@ export class Unrests {
   }
 
   private worst(experiment: number, rows: number): Unrest[][] {
-    const { data: { prices, supply_v, pwm_top }, rests: { ticks, band } } = this;
-    const found = ticks.map((one) => this.module.resting(experiment, rows, one, band));
+    const { data: { prices, supply_v, pwm_top }, rests } = this;
+    const { ticks } = rests;
+    const found = ticks.map((one) => this.module.resting(experiment, rows, one, rests.band));
     return found[0]!.map((row, n) => row.map(({ lost }, joint) => {
       const each = ticks.map(([from, to], rest) => {
         const { turns, travel, swings, ripple } = found[rest]![n]![joint]!;
         const seconds = (to - from) * TICK_S;
         return {
-          turns, chatter: swings / seconds, travel: turns >= prices.limit_cycle_turns ? travel / seconds : 0,
+          turns, chatter: swings / seconds, travel: turns >= rests.turns ? travel / seconds : 0,
           ripple: supply_v * (Math.sqrt(ripple) / pwm_top[joint]!),
         };
       });
       const most = (name: "turns" | "chatter" | "travel" | "ripple"): number => Math.max(...each.map((one) => one[name]));
       const chatter = most("chatter");
-      const fails = most("turns") >= prices.limit_cycle_turns || chatter > prices.chatter_at_rest_hz || lost;
+      const fails = most("turns") >= rests.turns || chatter > prices.chatter_at_rest_hz || lost;
       return { fails, travel: most("travel"), chatter, ripple: most("ripple"), lost };
     }));
   }

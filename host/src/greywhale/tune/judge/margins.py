@@ -16,11 +16,10 @@ from dataclasses import dataclass, fields
 from typing import Any, TypedDict
 
 import numpy as np
-import numpy.typing as npt
 
 from greywhale.arm import ArmParameters
-from greywhale.arm.plants import columns, joint_columns
-from greywhale.base.types import Controllers, Floats, Integers
+from greywhale.arm.plants import columns
+from greywhale.base.types import Controllers, Flags, Floats, Integers
 from greywhale.files.trajectory import Trajectory
 from greywhale.motion.generate import minimum_jerk
 from greywhale.motion.swings import (
@@ -28,7 +27,7 @@ from greywhale.motion.swings import (
     CHATTER_MOVING_HZ,
     LIMIT_CYCLE,
     RATTLE_MOVING_RAD,
-    SEARCH_BAND_RAD,
+    SEARCH_CYCLE,
     count_swings,
     duty_swings,
     ripple,
@@ -109,14 +108,15 @@ class Unrest:
     """The unrest of every candidate on every plant, per joint: (n, k, 4) each, in the worst rest of the record."""
 
     reversals: Integers
+    hunts: Flags  # turns so often
     travel: Floats  # rad/s, in swings of a limit cycle
     chatter: Floats  # 1/s, duty swings
     ripple: Floats  # V rms
-    lost: npt.NDArray[np.bool_]  # left the range of numbers
+    lost: Flags  # left the range of numbers
 
     @property
-    def fails(self) -> npt.NDArray[np.bool_]:
-        return (self.reversals >= LIMIT_CYCLE.turns) | (self.chatter > CHATTER_AT_REST_HZ) | self.lost
+    def fails(self) -> Flags:
+        return self.hunts | (self.chatter > CHATTER_AT_REST_HZ) | self.lost
 
 
 def _part(found: Unrest, plants: slice) -> Unrest:
@@ -148,7 +148,7 @@ class Margins:
         self.plants = plants
         self._arm, self._table, self._seed = arm, table, 100 * seed + _MOVING_SEED + noise
         self._threads = threads
-        self._band = SEARCH_BAND_RAD if searching else LIMIT_CYCLE.band_rad
+        self._cycle = SEARCH_CYCLE if searching else LIMIT_CYCLE
         self._beyond = SEARCH_BEYOND if searching else 1.0
         self._rests = rest_ticks(rest_s)
         common: dict[str, Any] = {
@@ -195,14 +195,15 @@ class Margins:
         travel, chatter, loud = (np.zeros((*shape, JOINTS)) for _ in range(3))
         for rows in self._rests:
             seconds = (rows[1] - rows[0]) * TICK_S
-            turned, moved = (one.reshape(*shape, JOINTS) for one in count_swings(result.angles, *rows, self._band))
+            swings = count_swings(result.angles, *rows, self._cycle.band_rad)
+            turned, moved = (one.reshape(*shape, JOINTS) for one in swings)
             beats = duty_swings(result.duties, rows, self._table.board).reshape(*shape, JOINTS)
             hiss = self._table.supply_v * ripple(result.duties, rows, self._table.board).reshape(*shape, JOINTS)
             reversals = np.maximum(reversals, turned)
-            travel = np.maximum(travel, np.where(turned >= LIMIT_CYCLE.turns, moved / seconds, 0.0))
+            travel = np.maximum(travel, np.where(turned >= self._cycle.turns, moved / seconds, 0.0))
             chatter, loud = np.maximum(chatter, beats / seconds), np.maximum(loud, hiss)
         lost = np.repeat(result.diverged.reshape(shape)[:, :, None], JOINTS, axis=2)
-        return Unrest(reversals, travel, chatter, loud, lost)
+        return Unrest(reversals, reversals >= self._cycle.turns, travel, chatter, loud, lost)
 
     def check(self, controllers: Controllers) -> tuple[Margin, ...]:
         """Check one controller (4, 13) in the bench's own arithmetic: a verdict for each scenario and joint."""
@@ -305,19 +306,6 @@ def with_softer_teeth(plants: Floats) -> Floats:
     softer[:, columns("stiffness")] /= SOFTER
     softer[:, columns("mesh_damping")] /= LESS_DAMPED
     return softer
-
-
-def compose_hard_plant(plants: Floats, searched: Floats, fails: Integers) -> Floats | None:
-    """The first plant (columns,), but with each joint as it is where its controller fails most: `fails` is (plants, 4).
-
-    Joints as `searched` has them do not count. None where no other fails.
-    """
-    fails, hard = fails.copy(), plants[0].copy()
-    for joint in range(JOINTS):
-        own = joint_columns(joint)
-        fails[(plants[:, None, own] == searched[None, :, own]).all(axis=2).any(axis=1), joint] = 0
-        hard[own] = plants[np.argmax(fails[:, joint]), own]
-    return hard if fails.any() else None
 
 
 def stops(low: Floats, high: Floats, rest_s: float) -> Trajectory:
