@@ -35,7 +35,7 @@ from greywhale.simulate import Result
 from greywhale.tune.search.training import WAIT_S, TrainingMotion
 
 RMS = 6.0
-RATTLE = 3.0
+RATTLE = 9.0
 LOUDER = 3.0
 # Rattling below this (rad) is never louder: a board's angle has steps of a quarter of it.
 QUIET_RAD = 1e-3
