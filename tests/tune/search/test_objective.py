@@ -11,14 +11,17 @@ from greywhale.arm.plants import column
 from greywhale.base.errors import UserError
 from greywhale.files.arm import default_arm
 from greywhale.files.trajectory import Trajectory
+from greywhale.motion.swings import RATTLE_MOVING_RAD
 from greywhale.protocol.table import ParameterTable
 from greywhale.simulate import default_controller, plant_row
 from greywhale.tune.possible import scale_of
 from greywhale.tune.search.objective import (
+    BEARABLE,
     CHATTER,
     LOUDER,
     QUIET_RAD,
     RATTLE,
+    SHAKING,
     ErrorScale,
     FollowingErrors,
     Objective,
@@ -80,7 +83,7 @@ def test_large_moves_count_half_and_fine_following_the_other_half(objective: Obj
     np.testing.assert_allclose(objective.costs(BEFORE[None])[0], 0.5 * large + 0.25 * (human + slow))
 
 
-def test_rattling_and_chatter_cost_in_every_class_and_most_beyond_what_was_before() -> None:
+def test_rattling_and_chatter_cost_most_beyond_what_was_before_and_near_the_margin() -> None:
     floor, room, before = np.zeros((1, 2, 4)), np.full((1, 2, 4), 0.05), np.full((1, 2, 4), 0.002)
     scale, none = ErrorScale(floor, room, before), np.zeros((1, 1, 2, 4))
     quiet, loud, chattering = none.copy(), none.copy(), none.copy()
@@ -94,6 +97,9 @@ def test_rattling_and_chatter_cost_in_every_class_and_most_beyond_what_was_befor
     silent = replace(scale, rattle=np.zeros((1, 2, 4)))
     free = relative_costs(FollowingErrors(none, none, np.full_like(none, QUIET_RAD), none), silent, 15.0)
     np.testing.assert_allclose(free, np.sqrt(RATTLE * QUIET_RAD / 0.05))
+    always = replace(scale, rattle=np.full((1, 2, 4), RATTLE_MOVING_RAD))
+    shaken = relative_costs(FollowingErrors(none, none, always.rattle[:, None], none), always, 15.0)
+    np.testing.assert_allclose(shaken, np.sqrt(RATTLE * RATTLE_MOVING_RAD / 0.05 + SHAKING * (1.0 - BEARABLE)))
 
 
 def test_a_joint_that_is_tuned_one_sidedly_pays(objective: Objective) -> None:

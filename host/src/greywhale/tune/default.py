@@ -12,7 +12,7 @@
    began. A joint that falls short there is searched once more.
 
 Margins are looked at on the search's two plants alone. Of many drawn arms the softest would decide, and it is softer
-than any arm that was recorded.
+than the arm by more than recordings err.
 """
 
 from __future__ import annotations

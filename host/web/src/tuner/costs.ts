@@ -62,7 +62,9 @@ export class Costs {
     const avoidable = Math.max(found.error - floor[joint]!, 0);
     const length = avoidable + prices.rattle * (found.rattle + prices.louder * louder);
     const unbearable = Math.max(found.chatter / prices.chatter_moving_hz - prices.bearable, 0);
-    return Math.sqrt(length / room + prices.chatter_moving * unbearable + (prices.effort * found.volts) / supply_v);
+    const shaking = Math.max(found.rattle / prices.rattle_moving_rad - prices.bearable, 0);
+    const unrest = prices.chatter_moving * unbearable;
+    return Math.sqrt(length / room + unrest + prices.shaking * shaking + (prices.effort * found.volts) / supply_v);
   }
 
   private penalty(scenarios: readonly (readonly [string, Unrest])[], quietV: number): number {

@@ -67,8 +67,8 @@ export type SearchData = {
 };
 
 export type Price =
-  | "soon_s" | "rms" | "rattle" | "louder" | "quiet_rad" | "chatter_moving" | "bearable" | "chatter_moving_hz" | "effort"
-  | "lost" | "chatter_at_rest_hz" | "quiet_share" | "search_ripple" | "search_chatter" | "travel"
+  | "soon_s" | "rms" | "rattle" | "louder" | "quiet_rad" | "chatter_moving" | "shaking" | "bearable" | "chatter_moving_hz"
+  | "rattle_moving_rad" | "effort" | "lost" | "chatter_at_rest_hz" | "quiet_share" | "search_ripple" | "search_chatter" | "travel"
   | "chatter_at_rest" | "fail" | "teeth" | "ripple" | "loud" | "lost_at_rest" | "same" | "shaken";
 
 export type TunerData = {

@@ -12,7 +12,8 @@ cannot be helped. To this come, in every class,
 
 - RATTLE times the rattling (`rattle`, rad), on the same scale, and as much as LOUDER times that for what is beyond the
   rattling from before;
-- CHATTER for every CHATTER_MOVING_HZ of duty swings beyond those that a moving gear bears;
+- CHATTER for every CHATTER_MOVING_HZ of duty swings beyond those that a moving gear bears, and SHAKING for every
+  RATTLE_MOVING_RAD of rattling: at these the margin while moving is lost;
 - EFFORT times the mean of |u| as a share of the supply, weighted like |e|.
 
 The cost of the class is the root of this sum, because the last tenth of the way matters more than the first. Large
@@ -29,7 +30,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from greywhale.base.types import Controllers, Floats
-from greywhale.motion.swings import CHATTER_MOVING_HZ, chatter, rattle
+from greywhale.motion.swings import CHATTER_MOVING_HZ, RATTLE_MOVING_RAD, chatter, rattle
 from greywhale.protocol.firmware import JOINTS
 from greywhale.simulate import Result
 from greywhale.tune.search.training import WAIT_S, TrainingMotion
@@ -40,7 +41,8 @@ LOUDER = 3.0
 # Rattling below this (rad) is never louder: a board's angle has steps of a quarter of it.
 QUIET_RAD = 1e-3
 CHATTER = 0.3
-BEARABLE = 0.7  # of CHATTER_MOVING_HZ
+SHAKING = 1.0
+BEARABLE = 0.7  # of CHATTER_MOVING_HZ and RATTLE_MOVING_RAD
 EFFORT = 0.02
 WORST_SHARE = 0.5
 LOST = 1e3  # a motion that left the range of numbers
@@ -115,7 +117,8 @@ def relative_costs(found: FollowingErrors, scale: ErrorScale, supply_v: float) -
     avoidable = np.maximum(found.error - scale.floor, 0.0)
     length = avoidable + RATTLE * (found.rattle + LOUDER * louder)
     unbearable = np.maximum(found.chatter / CHATTER_MOVING_HZ - BEARABLE, 0.0)
-    share = length / scale.room + CHATTER * unbearable + EFFORT * found.volts / supply_v
+    shaking = np.maximum(found.rattle / RATTLE_MOVING_RAD - BEARABLE, 0.0)
+    share = length / scale.room + CHATTER * unbearable + SHAKING * shaking + EFFORT * found.volts / supply_v
     return np.sqrt(share)
 
 
