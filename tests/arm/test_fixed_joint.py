@@ -85,7 +85,7 @@ def test_windows_hold_it_bit_by_bit() -> None:
     arm, rows, substeps, h = with_joints((1, 3)), 50, 4, 0.25e-3
     volts = np.random.default_rng(5).uniform(-15, 15, (rows * substeps, 4))
     window: dict[str, Any] = {"first": np.zeros(1, dtype=np.int64), "angles": np.array([[0.0, 0.2, 0.0, 0.4]])}
-    window |= {name: np.zeros((1, 4)) for name in ("offsets", "kicks", "velocities", "sides", "places")}
+    window |= {name: np.zeros((1, 4)) for name in ("offsets", "velocities", "sides", "places")}
     window |= {"rows": rows, "spacing": np.full(rows, h * substeps), "substeps": substeps, "every": 1}
     angles = np.asarray(_native.simulate_windows(plants=plant_row(arm)[None], volts=volts, **window))[0, 0]
     np.testing.assert_array_equal(angles[:, [0, 2]], 0.0)

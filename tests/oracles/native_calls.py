@@ -19,7 +19,7 @@ BOARD = "settings timing pots pot_supply:real seed"
 ARGUMENTS = {
     "leader_readings": f"{BOARD} angles:float64",
     "sixteen_laws": "controllers:int32 period_ms leader:int32 follower:int32 limit_mv:uint16",
-    "simulate_windows": "plants:float64 offsets:float64 kicks:float64 first:int64 angles:float64 velocities:float64 "
+    "simulate_windows": "plants:float64 offsets:float64 first:int64 angles:float64 velocities:float64 "
     "sides:float64 places:float64 rows volts:float64 spacing:float64 substeps every",
     "simulate_ideal": "leader:float64 late plant:float64 supply:real tunings:float64 chased direction:int8 "
     "until:float64",

@@ -84,7 +84,6 @@ class WholeArm:
         angles = _native.simulate_windows(
             plants=self.plant[None],
             offsets=at_rest[:1],
-            kicks=at_rest[:1],
             first=np.arange(count, dtype=np.int64) * self.slices,
             angles=at_rest,
             velocities=at_rest,

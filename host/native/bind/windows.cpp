@@ -43,13 +43,8 @@ struct Drive {
   std::size_t substeps;
 };
 
-// What a candidate reads of its own angles: the potentiometers' zero, and how much faster the links started than
-// estimated.
-struct Start {
-  Rows offsets, kicks;
-};
-
-void check(const Windows& w, const Drive& drive, const Plants& plants, const Start& start, std::size_t every) {
+// `offsets`: by how much each candidate's potentiometers read other angles than the log's.
+void check(const Windows& w, const Drive& drive, const Plants& plants, const Rows& offsets, std::size_t every) {
   const std::size_t rows = drive.spacing.shape(0);
   if (every == 0 || drive.substeps == 0) throw std::invalid_argument("every and substeps must be 1 or more.");
   if (drive.volts.shape(0) != rows * drive.substeps)
@@ -59,9 +54,7 @@ void check(const Windows& w, const Drive& drive, const Plants& plants, const Sta
       w.places.shape(0) != count) {
     throw std::invalid_argument("first, angles, velocities, sides and places differ in length.");
   }
-  if (start.offsets.shape(0) != plants.shape(0) || start.kicks.shape(0) != plants.shape(0)) {
-    throw std::invalid_argument("offsets and kicks need a row for every plant.");
-  }
+  if (offsets.shape(0) != plants.shape(0)) throw std::invalid_argument("offsets need a row for every plant.");
   for (std::size_t n = 0; n < count; ++n) {
     if (w.first(n) < 0 || static_cast<std::size_t>(w.first(n)) + w.rows > rows) {
       throw std::invalid_argument("a window reaches beyond the log.");
@@ -70,9 +63,9 @@ void check(const Windows& w, const Drive& drive, const Plants& plants, const Sta
 }
 
 // Every (candidate, window) pair once.
-nb::object run(const Windows& w, const Drive& drive, const Plants& plants, const Start& start, std::size_t every,
+nb::object run(const Windows& w, const Drive& drive, const Plants& plants, const Rows& offsets, std::size_t every,
                int threads) {
-  check(w, drive, plants, start, every);
+  check(w, drive, plants, offsets, every);
   const std::size_t candidates = plants.shape(0), count = w.first.shape(0), kept = (w.rows + every - 1) / every;
   const std::size_t size = kept * kJoints;
   auto values = std::make_unique<double[]>(candidates * count * size);
@@ -85,8 +78,7 @@ nb::object run(const Windows& w, const Drive& drive, const Plants& plants, const
     tasks.reserve(candidates * count);
     for (std::size_t window = 0; window < count; ++window) {
       for (std::size_t n = 0; n < candidates; ++n) {
-        tasks.push_back(
-            {&plants(n, 0), &start.offsets(n, 0), &start.kicks(n, 0), window, &values[(n * count + window) * size]});
+        tasks.push_back({&plants(n, 0), &offsets(n, 0), window, &values[(n * count + window) * size]});
       }
     }
     windows::simulate(given, tasks, threads);
@@ -101,15 +93,14 @@ nb::object run(const Windows& w, const Drive& drive, const Plants& plants, const
 void bind_identify(nb::module_& m) {
   m.def(
       "simulate_windows",
-      [](const Plants& plants, const Rows& offsets, const Rows& kicks, const In<std::int64_t, nb::shape<-1>>& first,
-         const Rows& angles, const Rows& velocities, const Rows& sides, const Rows& places, std::size_t rows,
-         const Rows& volts, const In<double, nb::shape<-1>>& spacing, std::size_t substeps, std::size_t every,
-         int threads) {
-        return run({first, angles, velocities, sides, places, rows}, {volts, spacing, substeps}, plants,
-                   {offsets, kicks}, every, threads);
+      [](const Plants& plants, const Rows& offsets, const In<std::int64_t, nb::shape<-1>>& first, const Rows& angles,
+         const Rows& velocities, const Rows& sides, const Rows& places, std::size_t rows, const Rows& volts,
+         const In<double, nb::shape<-1>>& spacing, std::size_t substeps, std::size_t every, int threads) {
+        return run({first, angles, velocities, sides, places, rows}, {volts, spacing, substeps}, plants, offsets, every,
+                   threads);
       },
-      nb::kw_only(), "plants"_a.noconvert(), "offsets"_a.noconvert(), "kicks"_a.noconvert(), "first"_a.noconvert(),
-      "angles"_a.noconvert(), "velocities"_a.noconvert(), "sides"_a.noconvert(), "places"_a.noconvert(), "rows"_a,
-      "volts"_a.noconvert(), "spacing"_a.noconvert(), "substeps"_a, "every"_a, "threads"_a = 0,
+      nb::kw_only(), "plants"_a.noconvert(), "offsets"_a.noconvert(), "first"_a.noconvert(), "angles"_a.noconvert(),
+      "velocities"_a.noconvert(), "sides"_a.noconvert(), "places"_a.noconvert(), "rows"_a, "volts"_a.noconvert(),
+      "spacing"_a.noconvert(), "substeps"_a, "every"_a, "threads"_a = 0,
       "Angles (candidates, windows, rows kept, 4) of candidate arms under logged voltages. The GIL is released.");
 }

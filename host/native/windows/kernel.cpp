@@ -64,7 +64,7 @@ class Run {
     for (std::size_t i = 0; i < kJoints; ++i) {
       const std::size_t at = one.window * kJoints + i;
       const arm::Sensor<Lanes>& sensor = row_.plant.joints[i].sensor;
-      const double velocity = w_.velocities[at] + one.kick[i], shown = w_.angles[at] + one.offset[i];
+      const double velocity = w_.velocities[at], shown = w_.angles[at] + one.offset[i];
       const double wiper = shown + velocity * sensor.lag[n], q = wiper + w_.places[at] * sensor.play[n];
       offset_[i].set(n, one.offset[i]);
       shown_[i].after.set(n, shown);

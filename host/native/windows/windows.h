@@ -22,7 +22,7 @@ struct Windows {
 // One candidate in one window.
 struct Task {
   const double* plant;  // a row of plants
-  const double *offset, *kick;
+  const double* offset;
   std::size_t window;
   double* out;  // (rows kept, 4)
 };

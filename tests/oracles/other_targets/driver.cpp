@@ -203,8 +203,7 @@ void sixteen_laws(Calls& calls, Results& results) {
 }
 
 void simulate_windows(Calls& calls, Results& results) {
-  const std::vector<double> plants = calls.array<double>(), offsets = calls.array<double>(),
-                            kicks = calls.array<double>();
+  const std::vector<double> plants = calls.array<double>(), offsets = calls.array<double>();
   const std::vector<std::int64_t> first = calls.array<std::int64_t>();
   const std::vector<double> angles = calls.array<double>(), velocities = calls.array<double>(),
                             sides = calls.array<double>(), places = calls.array<double>();
@@ -216,7 +215,7 @@ void simulate_windows(Calls& calls, Results& results) {
   std::vector<windows::Task> tasks;
   for (std::size_t window = 0; window < first.size(); ++window) {
     for (std::size_t n = 0; n < candidates; ++n) {
-      tasks.push_back({&plants[n * loop::kPlantColumns], &offsets[n * kJoints], &kicks[n * kJoints], window,
+      tasks.push_back({&plants[n * loop::kPlantColumns], &offsets[n * kJoints], window,
                        &values[(n * first.size() + window) * size]});
     }
   }

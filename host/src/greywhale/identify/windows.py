@@ -174,7 +174,6 @@ class WindowResidual:
         angles: Floats = _native.simulate_windows(  # type: ignore[assignment] # the stub says object
             plants=plants,
             offsets=offsets,
-            kicks=np.zeros_like(offsets),
             first=windows.first,
             angles=windows.angles,
             velocities=windows.velocities,
