@@ -23,7 +23,7 @@ SIDE_BY_SIDE := $(MAKE) READY= --no-print-directory --jobs=$(shell nproc) --outp
 PYTEST := $(PYTHON) -m pytest -n auto
 
 .DEFAULT_GOAL := help
-.PHONY: help setup ready build firmware demo dashboard report check test pytest lint oracles benchmarks attack docs site dist format lock hooks clean $(LINT) $(UNIT_TESTS) $(IMAGES)
+.PHONY: help setup ready build firmware demo dashboard report check test pytest lint oracles benchmarks attack docs site dist format lock hooks clean lint-aside $(LINT) $(UNIT_TESTS) $(IMAGES)
 
 help: ## list the targets
 	@sed -n 's/^\([a-z]*\):[^#]*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 12
@@ -57,11 +57,14 @@ check: $(READY) ## before each commit: lint, unit tests, the short way through t
 
 test: $(READY) ## everything: lint, unit tests here and on the simulated board, gates on size, tick and stack, pytest
 	@$(SIDE_BY_SIDE) $(UNIT_TESTS) $(IMAGES)
-	@$(SIDE_BY_SIDE) pytest $(LINT)
+	@$(SIDE_BY_SIDE) pytest lint-aside
 
-# A test that waits leaves a core to lint. With the plus, make shows what pytest says as it says it.
+# With the plus, make shows what it says as it says it.
 pytest: $(READY)
 	+$(PYTEST) $(ARGS)
+
+lint-aside: $(READY) # with what tests leave of the cores while they wait
+	+@nice -n 19 $(MAKE) $(LINT)
 
 ruff: $(READY)
 	ruff check
