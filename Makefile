@@ -63,8 +63,9 @@ test: $(READY) ## everything: lint, unit tests here and on the simulated board, 
 pytest: $(READY)
 	+$(PYTEST) $(ARGS)
 
-lint-aside: $(READY) # with what tests leave of the cores while they wait
-	+@nice -n 19 $(MAKE) $(LINT)
+# With what the tests leave of the cores. Any lower, and it would starve where other programs are busy.
+lint-aside: $(READY)
+	+@nice -n 10 $(MAKE) $(LINT)
 
 ruff: $(READY)
 	ruff check
