@@ -276,7 +276,8 @@ def browser() -> Iterator[Browser]:
 @contextlib.contextmanager
 def profile(browser: Browser) -> Iterator[BrowserContext]:
     """What all pages of a test run share; each has an address, and so a memory, of its own."""
-    context = browser.new_context(viewport={"width": 1280, "height": 900})
+    # As small as a page may be that still stands in two columns: software draws.
+    context = browser.new_context(viewport={"width": 960, "height": 700})
     context.new_page()  # keeps the renderer
     yield context
     context.close()
