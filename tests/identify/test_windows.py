@@ -55,9 +55,11 @@ def test_windows_are_the_arm_bit_by_bit(white_box: ArmParameters) -> None:
                 arm.step(given["volts"][(first + row) * SUBSTEPS + n], given["spacing"][first + row] / SUBSTEPS)
 
 
-def test_offsets_and_sides_move_the_start() -> None:
+def test_velocities_offsets_and_sides_move_the_start() -> None:
     given = arguments(default_arm(), 1)
     plain = np.asarray(_native.simulate_windows(**given))
+    moving = np.asarray(_native.simulate_windows(**(given | {"velocities": np.full((3, 4), 0.5)})))
+    assert np.all(np.abs(moving - plain)[0, :, 1] > 1e-5)
     # A joint without gravity does not care where zero is.
     shifted = np.asarray(_native.simulate_windows(**(given | {"offsets": np.array([[0.3, 0.0, 0.0, 0.3]])})))
     np.testing.assert_allclose(shifted[..., [0, 3]], plain[..., [0, 3]], atol=1e-9)

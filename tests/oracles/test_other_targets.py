@@ -184,7 +184,7 @@ def test_identification_windows(calls: Calls, driver: Driver, tmp_path: Path) ->
             given = windows_of_test(load_arm(arm), count)
             angles = np.asarray(_native.simulate_windows(**given))
             assert np.abs(angles[:, :, -1] - angles[:, :, 0]).max() > 1e-3
-            _native.simulate_windows(**(given | {"spacing": spacing}))
+            _native.simulate_windows(**(given | {"spacing": spacing, "velocities": np.full((3, 4), 0.5)}))
     require_same_bits(calls, driver, tmp_path)
 
 
