@@ -12,7 +12,7 @@ from greywhale.arm.parameters import JOINT_NAMES
 from greywhale.base.errors import UserError
 from greywhale.cli.story import BenchProcess, DemoOptions, DemoResult, practice, run, story
 from greywhale.cli.story.recorder import record_motion
-from greywhale.commission import motions, search
+from greywhale.commission import journal, motions, search
 from greywhale.files.leader import save_leader
 from greywhale.files.log import Log
 from greywhale.files.model import arm_toml
@@ -42,7 +42,9 @@ def test_the_demo_tells_its_story_and_proves_its_controllers_on_the_arm(
     for name, value in short.items():
         monkeypatch.setattr(motions, name, value)
     told: list[str] = []
-    out = tmp_path / "new" / "demo"
+    out = tmp_path / "demo"
+    (out / "commission").mkdir(parents=True)
+    (out / "commission" / journal.NAME).write_text("A commissioning by an earlier demo,\nwith a step.\n")
     options = DemoOptions(
         out, arm=arm_with_joints(1, tmp_path), duration_s=4.0, practice_s=10.0, budget=100, prove=True
     )
@@ -84,7 +86,7 @@ def test_the_demo_shows_a_controller_that_it_is_given_on_the_joints_that_there_a
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     in_this_process(monkeypatch)
-    out, table = tmp_path / "demo", ROOT / "shared" / "fuzzy_tables" / "table_8.toml"
+    out, table = tmp_path / "new" / "demo", ROOT / "shared" / "fuzzy_tables" / "table_8.toml"
     result = run(DemoOptions(out, arm=arm_with_joints(3, tmp_path), duration_s=4.0, controller=table))
     assert result.learnt is None
     assert [one.name for one in result.runs] == ["before tuning", "table_8"]

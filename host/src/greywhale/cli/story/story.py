@@ -129,14 +129,17 @@ class _Stage:
         """Try the tuned controllers and variants of them on the arm, while the person holds the leader still."""
         # It brings identification and tuning along, which are slow to import.
         from greywhale.commission import CommissioningRequest, commission
+        from greywhale.commission.journal import NAME
         from greywhale.commission.page import save_page
 
         options = self._options
+        out = options.out / "commission"
+        (out / NAME).unlink(missing_ok=True)  # of an earlier demo in this folder
         self._bench.command(f"leader {shlex.quote(str((options.out / REST_FILE).resolve()))}")
         outcome = commission(
             CommissioningRequest(
                 port=self._bench.port,
-                out=options.out / "commission",
+                out=out,
                 model=learnt.model,
                 rounds=1,
                 trials=PROVING_TRIALS,
@@ -144,7 +147,7 @@ class _Stage:
             ),
             self._report,
         )
-        save_page(outcome, options.out / "commission" / "report.html")
+        save_page(outcome, out / "report.html")
 
     def _tell_board(self) -> ParameterTable:
         """Tell the board the arm's supply and joints, as a person would; return the parameters that it then has."""
