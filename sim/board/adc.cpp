@@ -13,6 +13,8 @@ enum : uint8_t { ADEN = 0x80, ADSC = 0x40, ADATE = 0x20, ADIF = 0x10, ADIE = 0x0
 constexpr unsigned ADLAR = 0x20, ADTS = 0x07, MUX5 = 0x08;
 constexpr double bandgap_millivolts = 1100.0;
 constexpr double temperature_millivolts = 314.0;  // ATmega328P at 25 degrees Celsius
+constexpr double track_ohm = 10e3;                // of a potentiometer
+constexpr double pull_up_ohm = 35e3;              // data sheets: 20 to 50 kOhm
 
 avr_int_vector_t* find_adc_vector(avr_t& avr) {
   for (unsigned i = 0; i < avr.interrupts.vector_count; ++i) {
@@ -29,6 +31,7 @@ Adc::Adc(avr_t& avr, const Chip& chip, Interrupts& interrupts)
   on_write<&Adc::write_control>(avr_, reg::ADCSRA, *this);
   on_write<&Adc::write_mux>(avr_, reg::ADMUX, *this);
   on_write<&Adc::write_mux>(avr_, reg::ADCSRB, *this);
+  on_write<&Adc::write_port>(avr_, static_cast<uint16_t>(port_base(chip.adc_port) + 2), *this);
   on_read<&Adc::read_low>(avr_, reg::ADCL, *this);
   on_read<&Adc::read_high>(avr_, reg::ADCH, *this);
 }
@@ -39,15 +42,22 @@ void Adc::reset() {
   end_ = 0;
 }
 
-// Inputs change between two runs of the CPU only, so sampling may wait until the result or a change needs it.
+// Inputs change between two runs of the CPU and with their pull-ups only, so sampling may wait until the result or a
+// change needs it.
 void Adc::set_millivolts(const std::array<double, input_count>& millivolts) {
-  if (running() && !sampled_ && sample_at_ <= avr_.cycle) sample();
+  sample_if_due(avr_.cycle);
   millivolts_ = millivolts;
 }
 
 void Adc::set_floating(uint8_t inputs) {
-  if (running() && !sampled_ && sample_at_ <= avr_.cycle) sample();
+  sample_if_due(avr_.cycle);
   floating_ = inputs;
+}
+
+void Adc::set_joined(uint8_t inputs, unsigned wipers) {
+  sample_if_due(avr_.cycle);
+  joined_ = inputs;
+  wipers_ = wipers;
 }
 
 unsigned Adc::selected() const {
@@ -57,7 +67,6 @@ unsigned Adc::selected() const {
 }
 
 double Adc::millivolts_at(unsigned mux) const {
-  if (mux < input_count) return millivolts_[mux];
   if (mux == (chip_.wide_adc_mux ? 0x1Eu : 0x0Eu)) return bandgap_millivolts;
   if (mux == 8 && !chip_.wide_adc_mux) return temperature_millivolts;
   return 0.0;  // ground, ADC8..15 and the differential channels: nothing is connected
@@ -83,9 +92,25 @@ void Adc::start(uint64_t edge) {
   admux_ = avr_.data[reg::ADMUX];
 }
 
+void Adc::sample_if_due(uint64_t cycle) {
+  if (running() && !sampled_ && sample_at_ <= cycle) sample();
+}
+
+// A wiper's source has the resistance of its track from there to both ends.
+double Adc::pulled_up(unsigned input) const {
+  const uint16_t pins = port_base(chip_.adc_port);
+  const unsigned on = avr_.data[pins + 2] & ~avr_.data[pins + 1] & chip_.adc_pins;
+  const bool joined = joined_ >> input & 1u;
+  const unsigned pulling = on & (joined ? joined_ : 1u << input);
+  if (pulling == 0) return millivolts_[input];
+  const double volts = millivolts_[input], supply = avr_.avcc, share = volts / supply;
+  const double source = track_ohm * share * (1.0 - share) / (joined ? wipers_ : 1);
+  return volts + (supply - volts) * source / (source + pull_up_ohm / __builtin_popcount(pulling));
+}
+
 void Adc::sample() {
   const bool floats = mux_ < input_count && (floating_ >> mux_ & 1);
-  if (!floats) charge_ = millivolts_at(mux_);
+  if (!floats) charge_ = mux_ < input_count ? pulled_up(mux_) : millivolts_at(mux_);
   const double count = charge_ * 1024.0 / reference_millivolts(admux_);
   held_ = static_cast<uint16_t>(count >= 1023.0 ? 1023.0 : count > 0.0 ? count : 0.0);
   sampled_ = true;
@@ -142,6 +167,11 @@ void Adc::write_mux(uint16_t reg, uint8_t value) {
     mux_ = selected();
     admux_ = avr_.data[reg::ADMUX];
   }
+}
+
+void Adc::write_port(uint16_t reg, uint8_t value) {
+  sample_if_due(store_ends(avr_));
+  avr_.data[reg] = value;
 }
 
 // Reading ADCL holds the result until ADCH is read too.

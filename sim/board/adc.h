@@ -22,6 +22,8 @@ class Adc {
   // Inputs without a wire, bit i for ADCi: such a one has no voltage of its own, and the sampling capacitor keeps what
   // the conversion before left on it.
   void set_floating(uint8_t inputs);
+  // Inputs on one wire, with so many potentiometers' wipers on it: a pull-up of one of them pulls all.
+  void set_joined(uint8_t inputs, unsigned wipers);
   uint64_t conversions() const { return conversions_; }
 
  private:
@@ -31,10 +33,13 @@ class Adc {
   double reference_millivolts(unsigned admux) const;
   void start(uint64_t edge);
   void sample();
+  void sample_if_due(uint64_t cycle);
+  double pulled_up(unsigned input) const;
   avr_cycle_count_t on_done(avr_cycle_count_t when);
 
   void write_control(uint16_t reg, uint8_t value);
   void write_mux(uint16_t reg, uint8_t value);
+  void write_port(uint16_t reg, uint8_t value);
   uint8_t read_low(uint16_t reg);
   uint8_t read_high(uint16_t reg);
 
@@ -44,7 +49,8 @@ class Adc {
   avr_int_vector_t* vector_ = nullptr;
 
   std::array<double, input_count> millivolts_{};
-  uint8_t floating_ = 0;
+  uint8_t floating_ = 0, joined_ = 0;
+  unsigned wipers_ = 1;
   double charge_ = 0.0;      // mV on the sampling capacitor
   uint64_t enabled_at_ = 0;  // the prescaler counts from here
   bool first_ = true;

@@ -172,6 +172,10 @@ void bind_pins(BoardClass& c) {
       .def(
           "set_floating", [](PyBoard& b, uint8_t inputs) { b.adc().set_floating(inputs); }, "inputs"_a,
           "Inputs without a wire, bit i for ADCi: they read what the conversion before left on the sampling capacitor.")
+      .def(
+          "set_joined", [](PyBoard& b, uint8_t inputs, unsigned wipers) { b.adc().set_joined(inputs, wipers); },
+          "inputs"_a, "wipers"_a,
+          "Inputs on one wire, bit i for ADCi, with so many wipers on it: the pull-up of one pulls all.")
       .def("add_duty_output", &PyBoard::add_duty_output, "timer"_a, "channel"_a,
            "Watch a PWM output, for example (3, \"A\") for OC3A; its place in outputs().")
       .def("add_pin_output", &PyBoard::add_pin_output, "port"_a, "bit"_a,

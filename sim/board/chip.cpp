@@ -8,8 +8,8 @@ namespace board {
 
 namespace {
 constexpr Chip chips[] = {
-    {"atmega2560", "ATmega2560", 6, 5, 5, 0x3E000, 256, true, true, "ABCDEFGHJKL"},
-    {"atmega328p", "ATmega328P", 5, 4, 4, 0x7000, 128, false, false, "BCD"},
+    {"atmega2560", "ATmega2560", 6, 5, 5, 0x3E000, 256, true, true, "ABCDEFGHJKL", 'F', 0xFF},
+    {"atmega328p", "ATmega328P", 5, 4, 4, 0x7000, 128, false, false, "BCD", 'C', 0x3F},
 };
 }  // namespace
 

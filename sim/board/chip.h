@@ -18,6 +18,8 @@ struct Chip {
   bool wide_pc;               // more than 128 KB of flash: 22-bit program counter, RAMPZ, EIND
   bool wide_adc_mux;          // six multiplexer bits (MUX5 in ADCSRB) instead of four
   const char* ports;          // port letters
+  char adc_port;              // ADC0 is its bit 0
+  uint8_t adc_pins;           // those of ADC0..7 that are pins of a port, and so have a pull-up
 };
 
 // Throws BoardError for anything but "atmega2560" and "atmega328p".

@@ -54,7 +54,7 @@ void Bench::run_slice() {
     pot_faults.apply(millivolts_);
   }
   if (shared_) look_at_supply();
-  board.run_slice(millivolts_, floating_);
+  board.run_slice(millivolts_, floating_, joined_);
 }
 
 void Bench::drive() {
@@ -92,6 +92,11 @@ void Bench::let_float(std::size_t pot, bool floats) {
   floating_ = floats ? floating_ | 1u << pot : floating_ & ~(1u << pot);
 }
 
+void Bench::touch(unsigned one, unsigned other) {
+  pot_faults.touch(one, other);
+  joined_ = 1u << one | 1u << other;
+}
+
 void Bench::wire_motor(std::size_t joint, double gain, std::size_t driver) {
   gains_.at(joint) = gain;
   drivers_.at(joint) = driver;
@@ -123,7 +128,7 @@ void Bench::scale_noise(double times) {
 
 void Bench::mend() {
   pot_faults = {};
-  floating_ = 0;
+  floating_ = joined_ = 0;
   for (std::size_t pot = 0; pot < kPots; ++pot) set_wiring(pot, arm::Wiring::connected);
   for (std::size_t joint = 0; joint < arm::kJoints; ++joint) wire_motor(joint, 1.0, joint);
   supply_ = parameters_.arm.drive.supply.volts;

@@ -31,6 +31,7 @@ class Bench {
   arm::PotFaults pot_faults;
   void set_wiring(std::size_t pot, arm::Wiring wiring);
   void let_float(std::size_t pot, bool floats);
+  void touch(unsigned one, unsigned other);
   void wire_motor(std::size_t joint, double gain, std::size_t driver);
   void change_supply(double volts) { supply_ = volts; }
   void share_supply() { shared_ = true; }  // the board lives on the motors' supply, which sinks when a motor draws
@@ -62,6 +63,7 @@ class Bench {
   bool shared_ = false;
   unsigned sunk_ = 0;      // slices until the shared supply is back
   unsigned floating_ = 0;  // bits of the inputs without a wire
+  unsigned joined_ = 0;    // of those whose wires touch
   bool held_ = false;
   Millivolts millivolts_{};
   Four voltages_{}, follower_{};

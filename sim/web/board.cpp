@@ -16,11 +16,18 @@ constexpr unsigned kSliceUs = 250;
 constexpr unsigned kBytes = 25;      // a slice each way: 1 Mbaud
 constexpr unsigned kPieceUs = 60;    // what a piece of the firmware's work is taken to last
 constexpr double kReference = 5000;  // mV, of the converter
+constexpr double kTrackOhm = 10e3, kPullUpOhm = 35e3;
 
 // As in hal/avr/tick.cpp: each tick's chain of conversions starts 132 us after the tick, a conversion takes 26 us and
 // samples its input 3 us after its start; the followers come first.
 constexpr unsigned sampled_us(unsigned conversion) { return 132 + 26 * conversion + 3; }
 constexpr unsigned kFirstPot = hal::pot_count - hal::joint_count;
+
+// The voltage of two wipers' wires that touch, with the pull-up of one input on: see sim/board/adc.cpp.
+double pulled_up(double millivolts) {
+  const double share = millivolts / kReference, source = kTrackOhm * share * (1.0 - share) / 2.0;
+  return millivolts + (kReference - millivolts) * source / (source + kPullUpOhm);
+}
 
 alignas(app::App) unsigned char storage[sizeof(app::App)];
 app::App* arm = nullptr;
@@ -43,12 +50,16 @@ void Board::power_off() {
   to_board_.clear();
 }
 
-void Board::run_slice(const Millivolts& millivolts, unsigned floating) {
+void Board::run_slice(const Millivolts& millivolts, unsigned floating, unsigned joined) {
   if (!powered_) return to_board_.clear();
-  if (slice_ == 0 && converted_ == hal::web::conversions) tick();
+  if (slice_ == 0 && converted_ == hal::web::conversions) {
+    tick();
+    probe(before_, floating, joined);
+  }
   convert(millivolts, floating);
   move_bytes();
   work();
+  before_ = millivolts;
   slice_ = (slice_ + 1) % kSlices;
 }
 
@@ -65,15 +76,15 @@ void Board::convert(const Millivolts& millivolts, unsigned floating) {
     const unsigned pot = (kFirstPot + converted_) % hal::pot_count;
     if (!(floating >> pot & 1u)) charge_ = millivolts[pot];
     hal::web::convert(static_cast<std::uint8_t>(pot), count());
-    if (converted_ + 1 == hal::web::conversions) probe(millivolts, floating);
   }
 }
 
-// After ground, the next pot.
-void Board::probe(const Millivolts& millivolts, unsigned floating) {
-  probed_ = (probed_ + 1) % hal::pot_count;
-  charge_ = floating >> probed_ & 1u ? 0.0 : millivolts[probed_];
-  hal::web::probe(static_cast<std::uint8_t>(probed_), count());
+// After ground, the pot that the tick has chosen, with the pull-ups of all others on.
+void Board::probe(const Millivolts& millivolts, unsigned floating, unsigned joined) {
+  const unsigned pot = hal::web::probed();
+  charge_ = floating >> pot & 1u ? 0.0 : millivolts[pot];
+  if (joined >> pot & 1u) charge_ = pulled_up(charge_);
+  hal::web::probe(count());
 }
 
 unsigned Board::count() const { return static_cast<unsigned>(std::clamp(charge_ * 1024.0 / kReference, 0.0, 1023.0)); }

@@ -22,8 +22,8 @@ class Board {
   unsigned starts() const { return starts_; }
 
   // Lets 250 us pass with these voltages at the converter. A bit of `floating` marks an input without a wire: the
-  // sampling capacitor keeps what the conversion before left on it.
-  void run_slice(const Millivolts& millivolts, unsigned floating);
+  // sampling capacitor keeps what the conversion before left on it. Two of `joined` are inputs whose wires touch.
+  void run_slice(const Millivolts& millivolts, unsigned floating, unsigned joined);
 
   void send(std::uint8_t byte) { to_board_.push_back(byte); }
   // What the board has said since the last call of `clear`.
@@ -32,7 +32,7 @@ class Board {
  private:
   void tick();
   void convert(const Millivolts& millivolts, unsigned floating);
-  void probe(const Millivolts& millivolts, unsigned floating);
+  void probe(const Millivolts& millivolts, unsigned floating, unsigned joined);
   unsigned count() const;  // of the charge, as the converter says it
   void move_bytes();
   void work();
@@ -41,8 +41,8 @@ class Board {
   unsigned starts_ = 0;
   unsigned slice_ = 0;      // of the tick
   unsigned converted_ = 0;  // in this tick
-  unsigned probed_ = 0;     // the last pot that was read after ground
   double charge_ = 0.0;     // mV on the sampling capacitor
+  Millivolts before_{};     // in the last slice: the probe comes early in the tick
   std::deque<std::uint8_t> to_board_;
   std::vector<std::uint8_t> said_;
 };

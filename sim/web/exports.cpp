@@ -111,7 +111,7 @@ EXPORT(inject) void exported_inject(unsigned pot, unsigned kind) {
   bench->pot_faults.inject(pot, static_cast<arm::PotFault>(kind));
 }
 EXPORT(swap) void exported_swap(unsigned one, unsigned other) { bench->pot_faults.swap(one, other); }
-EXPORT(touch) void exported_touch(unsigned one, unsigned other) { bench->pot_faults.touch(one, other); }
+EXPORT(touch) void exported_touch(unsigned one, unsigned other) { bench->touch(one, other); }
 EXPORT(set_wiring) void exported_set_wiring(unsigned pot, unsigned wiring) {
   bench->set_wiring(pot, static_cast<arm::Wiring>(wiring));
 }

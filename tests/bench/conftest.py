@@ -61,6 +61,9 @@ class FakeBoard:
     def set_floating(self, inputs: int) -> None:
         self.events.append(f"floating {inputs:#x}")
 
+    def set_joined(self, inputs: int, wipers: int) -> None:
+        self.events.append(f"joined {inputs:#x}")
+
     def set_supply(self, millivolts: int, seed: int = 1) -> None:
         self.events.append(f"supply {millivolts}")
 

@@ -92,6 +92,35 @@ def test_a_floating_input_reads_what_the_conversion_before_left(program: MakePro
     assert run.finish().u16("result")[3] == 1500 * 1024 // 5000
 
 
+PULLED = """
+volatile uint16_t result[4];
+static uint16_t convert(uint8_t input) {
+    ADMUX = 0x40 | input; ADCSRA |= _BV(ADSC); while (ADCSRA & _BV(ADSC)); return ADC;
+}
+int main(void) {
+    ADCSRA = _BV(ADEN) | 5;
+    %(port)s = 1 << 2;
+    result[0] = convert(2); result[1] = convert(3); result[2] = convert(4);
+    %(port)s = 0; result[3] = convert(2);
+    DONE();
+}
+"""
+
+
+@pytest.mark.parametrize(("chip", "port"), [("atmega2560", "PORTF"), ("atmega328p", "PORTC")])
+@pytest.mark.parametrize(("wipers", "source"), [(1, 2100.0), (2, 1050.0)])
+def test_a_pull_up_raises_its_wire_at_every_input_that_the_wire_is_on(
+    program: MakeProgram, chip: str, port: str, wipers: int, source: float
+) -> None:
+    """A divider of 35 kOhm to the supply and the track's resistance at the wiper, here 7 kOhm beside 3 kOhm of 10."""
+    run = program(PULLED % {"port": port}, chip)
+    run.board.set_millivolts(np.full(8, 1500.0))
+    run.board.set_joined(1 << 2 | 1 << 4, wipers)
+    own = 1500 * 1024 // 5000
+    raised = int((1500 + 3500 * source / (source + 35e3)) * 1024 / 5000)
+    assert run.finish().u16("result") == [raised, own, raised, own]
+
+
 HOLD = """
 volatile uint8_t go; volatile uint16_t result;
 int main(void) {

@@ -77,6 +77,7 @@ def _read_neighbour(arm: ArmOnBoard, joint: int) -> None:
         volts[4 + joint] = volts[other]
 
     arm.pot_fault = fault
+    arm.board.set_joined(1 << 4 + joint | 1 << other, 1)
 
 
 def _touch_neighbour(arm: ArmOnBoard, joint: int) -> None:
@@ -87,6 +88,7 @@ def _touch_neighbour(arm: ArmOnBoard, joint: int) -> None:
         volts[both] = volts[both].mean()
 
     arm.pot_fault = fault
+    arm.board.set_joined(1 << both[0] | 1 << both[1], 2)
 
 
 def _float(follower: bool) -> Inject:

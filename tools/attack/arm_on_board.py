@@ -112,6 +112,7 @@ class ArmOnBoard(BoardWithImage):
         self.motor_signs[:] = 1.0
         self.stuck.clear()
         self.board.set_floating(0)
+        self.board.set_joined(0, 1)
         self.board.let_pin_go(self.wiring.estop.port, self.wiring.estop.bit)
         self.ask(schema.StopRequest())
         self.motion_s = 0.0

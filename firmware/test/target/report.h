@@ -19,7 +19,8 @@ inline uint16_t next_random() {  // xorshift, full period
 // A whole tick's duties towards the hardware; whether it had to be told that the one before was late.
 inline bool finish_tick() {
   const bool late = hal::tick_begin().late;
-  hal::release_pots();
+  hal::release_pots(0);
+  hal::end_pull_ups();
   hal::tick_end();
   return late;
 }

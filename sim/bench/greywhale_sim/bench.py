@@ -48,6 +48,7 @@ class Board(Protocol):
     def outputs(self) -> Floats: ...
     def set_millivolts(self, millivolts: Floats) -> None: ...
     def set_floating(self, inputs: int) -> None: ...
+    def set_joined(self, inputs: int, wipers: int) -> None: ...
     def set_supply(self, millivolts: int, seed: int = 1) -> None: ...
     def run_until(self, cycle: int) -> int: ...
 
@@ -210,6 +211,11 @@ class Bench:
         floats = floats or pot % len(ALL) not in self.joints
         self.floating = self.floating & ~(1 << pot) | floats << pot
         self.board.set_floating(self.floating)
+
+    def touch(self, one: int, other: int) -> None:
+        """Let the wires of two potentiometers' wipers touch."""
+        self.pot_faults.touch(one, other)
+        self.board.set_joined(1 << one | 1 << other, 2)
 
     def place(self, angles: Floats) -> None:
         """Hold the follower in a pose by hand, if the plant allows that (it has `reset`); no hand moves it beyond its

@@ -130,7 +130,7 @@ FAULTS = (
     ),
     Fault(
         "pot-touching", "pot", "the wiper's wire touches that of the next joint", "doctor",
-        "These read alike: .<first> and .<second>", lambda bench, pot: bench.pot_faults.touch(pot, _near(pot)),
+        "These read alike: .<first> and .<second>", lambda bench, pot: bench.touch(pot, _near(pot)),
     ),
     Fault(
         "pot-loose", "pot", "the wiper's wire is off for 2 ms again and again", "doctor",
@@ -210,6 +210,7 @@ def inject(bench: Bench, words: str) -> str:
 def mend(bench: Bench) -> None:
     """Wire everything rightly again."""
     bench.pot_faults = PotFaults()
+    bench.board.set_joined(0, 1)
     for pot in range(len(POTS)):
         _wire(Wiring.CONNECTED)(bench, pot)
     bench.connect_all()

@@ -6,8 +6,8 @@ namespace {
 
 constexpr uint16_t full_count = 1023;
 
-// Four counts: a joint that moves reads differently a little later, by less than that.
-constexpr uint8_t moves = 8;
+// Of four counts each. A joint that moves reads differently a little later, and a pot has its noise.
+constexpr uint8_t less = 8, more = 2;
 
 // Whether that changed anything.
 __attribute__((noinline)) bool calibrate(signal_chain::Pot& pot, const params::PotParameters& parameters) {
@@ -62,12 +62,11 @@ void Sampling::tick(const uint16_t* sums, supervisor::Observation& seen) {
   primed_ = true;
 }
 
-bool Sampling::floats(hal::Probe probe) const {
-  if (probe.pot >= hal::pot_count || !(signals_.rails & tell_rails)) return false;
-  const JointSignals& joint = signals_.joint[probe.pot % hal::joint_count];
-  const signal_chain::Pot& pot = probe.pot < hal::joint_count ? joint.leader : joint.follower;
-  const auto usual = static_cast<uint8_t>(pot.filtered >> 8);
-  return probe.count + moves < usual - usual / 8;  // a wire that is off brings some charge along
+Sampling::Wire Sampling::judge(hal::Probe probe) const {
+  if (probe.pot >= hal::pot_count || !(signals_.rails & tell_rails)) return Wire::good;
+  if (probe.count > probe.usual + more) return Wire::touches;
+  // A wire that is off brings some charge along.
+  return probe.count + less < probe.usual - probe.usual / 8 ? Wire::off : Wire::good;
 }
 
 void Sampling::prepare_low_passes() {

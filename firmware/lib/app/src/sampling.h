@@ -21,8 +21,9 @@ class Sampling {
   void prepare_low_passes();
   // Takes the sums of all pots, as hal::pot_sums() gives them, and writes the rails into `seen`.
   void tick(const uint16_t* sums, supervisor::Observation& seen);
-  // Whether an input has no wire: after ground it reads less than in its place among the others.
-  bool floats(hal::Probe probe) const;
+  // What the probe says of the pot that was probed last: whether its input has no wire, or one that touches another's.
+  enum class Wire : uint8_t { good, off, touches };
+  Wire judge(hal::Probe probe) const;
   // From here to the next tick no reading counts: the distances are farther than two angles can be apart.
   void forget();
 

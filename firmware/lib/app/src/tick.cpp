@@ -55,9 +55,10 @@ void Tick::run() {
   count(start);
   if (const uint16_t* sums = hal::pot_sums()) {
     sampling_.tick(sums, seen_);
-    hal::release_pots();
+    hal::release_pots(static_cast<uint8_t>(number_) % hal::pot_count);
   }
   supervise(start.late);
+  hal::end_pull_ups();
   follow_supervisor();
   if (drivers_on_) control();
   const uint16_t age_us = hal::tick_age_us();
@@ -90,7 +91,7 @@ __attribute__((noinline)) void Tick::note_rails() {
   const uint8_t pots = sampling_.pots_in_use();
   seen_.rail_low &= pots;
   seen_.rail_high &= pots;
-  supervisor_.note_rails(seen_);
+  supervisor_.note_rails(seen_.rail_low, seen_.rail_high);
 }
 
 __attribute__((noinline)) void Tick::switch_drivers() {
@@ -159,13 +160,15 @@ __attribute__((noinline)) void Tick::prepare_next() {
   show(supervisor_.state(), static_cast<uint16_t>(number_));
 }
 
-// A wire that is off counts as a reading at the lower rail: each pot comes once in eight ticks, and the rails tell what
-// is there more often than once in sixteen.
+// A wire that is off counts as a reading at the lower rail, one that touches another as a reading at the upper: each
+// pot comes once in eight ticks, and the rails tell what is there more often than once in sixteen.
 inline void Tick::look_at_probe() {
   const hal::Probe probe = hal::last_probe();
-  if (!sampling_.floats(probe)) return;
-  const auto pot = static_cast<uint8_t>((1u << probe.pot) & sampling_.pots_in_use());
-  supervisor_.note_rails({pot, 0, false, false});
+  const Sampling::Wire wire = sampling_.judge(probe);
+  if (wire == Sampling::Wire::good) return;
+  const uint8_t bit = hal::pot_bit(probe.pot) & sampling_.pots_in_use();
+  const bool off = wire == Sampling::Wire::off;
+  supervisor_.note_rails(off ? bit : uint8_t{0}, off ? uint8_t{0} : bit);
 }
 
 // What a joint may get until its next look. One that does not move is pushed with half as much again as starts it. One

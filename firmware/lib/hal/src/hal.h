@@ -12,6 +12,14 @@ constexpr uint8_t pot_count = 8;            // 0..3 leader, 4..7 follower
 constexpr uint8_t conversions_per_pot = 4;  // summed each tick
 constexpr uint16_t rail_mark = 0x1000;      // above every sum
 
+// 1 << pot, in the same few cycles for each.
+inline uint8_t pot_bit(uint8_t pot) {
+  uint8_t bit = pot & 1 ? 2 : 1;
+  if (pot & 2) bit = static_cast<uint8_t>(bit << 2);
+  if (pot & 4) bit = static_cast<uint8_t>(bit << 4);
+  return bit;
+}
+
 using codes::Board;
 Board board_id();  // unknown for one that has no name yet
 
@@ -37,13 +45,16 @@ uint16_t tick_age_us();  // time since the timer started this tick, resolution 4
 // Each conversion of 0..3 or 1020..1023 adds a rail_mark: a wire that opens in the middle of a tick shows in no sum
 // else. Release the sums before tick_end(): until then they stay as they are.
 const uint16_t* pot_sums();
-void release_pots();
+// The pot is probed: an input without a wire keeps what the converter's capacitor held, and reads like the pot before
+// it; one whose wire touches another's reads what both of them say. So a pot is read once more after ground, which
+// empties the capacitor, with the pull-ups of all other inputs on. They stay on until end_pull_ups().
+void release_pots(uint8_t probed);
+void end_pull_ups();  // 5 us later at least: by then the input has been sampled
 
-// An input without a wire keeps what the converter's capacitor held, so it reads like the pot before it. Each pot in
-// turn is therefore read once more after ground, which empties the capacitor.
 struct Probe {
-  uint8_t pot;    // the next one in each tick; pot_count: none has been read yet
-  uint8_t count;  // the upper 8 of 10 bits
+  uint8_t pot;    // pot_count or more: the tick had no time for it
+  uint8_t count;  // what it read, the upper 8 of 10 bits
+  uint8_t usual;  // the same of the mean of its last sum
 };
 Probe last_probe();
 

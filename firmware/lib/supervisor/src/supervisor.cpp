@@ -4,13 +4,19 @@
 namespace supervisor {
 namespace {
 
-uint8_t lowest_bit(uint8_t mask) {
-  uint8_t bit = 0;
-  while (!(mask & 1)) {
-    mask = static_cast<uint8_t>(mask >> 1);
-    ++bit;
-  }
-  return bit;
+struct BadPot {
+  Fault fault;  // none: all are good
+  uint8_t pot;
+};
+
+// The first at the lower rail, or else at the upper.
+__attribute__((noinline)) BadPot find_bad_pot(uint8_t low, uint8_t high) {
+  const Fault fault = low ? Fault::pot_low : Fault::pot_high;
+  uint8_t mask = low ? low : high;
+  if (!mask) return {Fault::none, nowhere};
+  uint8_t pot = 0;
+  for (; !(mask & 1); ++pot) mask = static_cast<uint8_t>(mask >> 1);
+  return {fault, pot};
 }
 
 }  // namespace
@@ -88,11 +94,11 @@ void Supervisor::bytes_lost(uint16_t tick) {
   if (motors_on() && overruns_.lost(tick)) raise(Fault::flood, nowhere);
 }
 
-void Supervisor::note_rails(const Observation& seen) {
-  if ((seen.rail_low | seen.rail_high) != 0) rails_.fill(seen.rail_low, seen.rail_high);
+void Supervisor::note_rails(uint8_t low, uint8_t high) {
+  rails_.fill(low, high);
   if (!motors_on()) return;
-  if (rails_.bad_low()) return raise(Fault::pot_low, lowest_bit(rails_.bad_low()));
-  if (rails_.bad_high()) raise(Fault::pot_high, lowest_bit(rails_.bad_high()));
+  const BadPot bad = find_bad_pot(rails_.bad_low(), rails_.bad_high());
+  if (bad.fault != Fault::none) raise(bad.fault, bad.pot);
 }
 
 void Supervisor::look_at_joint(uint8_t joint, const JointSeen& seen, const MotionLimits& limits) {
@@ -144,9 +150,8 @@ __attribute__((cold)) Reply Supervisor::enable(uint16_t lease_ms, const Observat
   if (state_ == State::boot) return {NackCode::booting, nowhere, 0};
   if (state_ == State::fault) return {NackCode::in_fault, nowhere, static_cast<uint16_t>(fault_)};
   if (seen.estop) return {NackCode::estop_pressed, nowhere, 0};
-  const uint8_t low = rails_.bad_low() | seen.rail_low, high = rails_.bad_high() | seen.rail_high;
-  if (low) return {NackCode::pot_bad, lowest_bit(low), static_cast<uint16_t>(Fault::pot_low)};
-  if (high) return {NackCode::pot_bad, lowest_bit(high), static_cast<uint16_t>(Fault::pot_high)};
+  const BadPot bad = find_bad_pot(rails_.bad_low() | seen.rail_low, rails_.bad_high() | seen.rail_high);
+  if (bad.fault != Fault::none) return {NackCode::pot_bad, bad.pot, static_cast<uint16_t>(bad.fault)};
   for (uint8_t i = 0; i < joint_count; ++i) {
     const uint16_t distance = distances.of[i];
     if (distance > limits_.enable_limit) return {NackCode::error_too_large, i, distance};
@@ -174,9 +179,8 @@ __attribute__((cold)) Reply Supervisor::clear_fault(const Observation& seen, con
   if (state_ == State::boot) return {NackCode::booting, nowhere, 0};
   if (state_ != State::fault) return {NackCode::none, nowhere, 0};
   if (seen.estop) return {NackCode::estop_pressed, nowhere, 0};
-  const uint8_t low = rails_.bad_low(), high = rails_.bad_high();
-  if (low) return {NackCode::pot_bad, lowest_bit(low), static_cast<uint16_t>(Fault::pot_low)};
-  if (high) return {NackCode::pot_bad, lowest_bit(high), static_cast<uint16_t>(Fault::pot_high)};
+  const BadPot bad = find_bad_pot(rails_.bad_low(), rails_.bad_high());
+  if (bad.fault != Fault::none) return {NackCode::pot_bad, bad.pot, static_cast<uint16_t>(bad.fault)};
   if (!params_ok_) return {NackCode::set_lost, nowhere, 0};
   if (fault_ == Fault::late_tick && seen.late) return {NackCode::in_fault, nowhere, static_cast<uint16_t>(fault_)};
   if (fault_ == Fault::tracking) {

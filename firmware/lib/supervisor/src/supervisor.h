@@ -62,8 +62,8 @@ class Supervisor {
   void tick(const Observation& seen);
   // Bytes of the link were lost in this tick: a stop may have been among them.
   void bytes_lost(uint16_t tick);
-  // Right after tick() when it has seen potentiometers at a rail.
-  void note_rails(const Observation& seen);
+  // Potentiometers at a rail, bit i is pot i: right after tick() when it has seen any, and between ticks.
+  void note_rails(uint8_t low, uint8_t high);
   // Between ticks, the next joint after each. It also moves the soft start on, which a tick has no time for.
   void look_at_joint(uint8_t joint, const JointSeen& seen, const MotionLimits& limits);
   // After unrest: starts the motors again, within the lease as it was. The fault stays to be seen. False when refused.

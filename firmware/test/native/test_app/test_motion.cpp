@@ -235,16 +235,12 @@ TEST_CASE("while the motors are on, a reading at a rail is not taken; while they
 
 namespace {
 
-// Ticks until the motors are off, at most 200, while each pot in turn is read after ground: this one so, the others as
-// among the conversions of a tick.
-unsigned ticks_with_probe(Bench& arm, std::uint8_t pot, std::uint16_t count) {
+// Ticks until the motors are off, at most 200, while a probed pot reads so much more than in its place among the
+// others.
+unsigned ticks_with_probe(Bench& arm, std::uint8_t pot, int beyond) {
+  board.probe_beyond[pot] = beyond;
   unsigned ticks = 0;
-  for (; board.drivers && ticks < 200; ++ticks) {
-    const auto next = static_cast<std::uint8_t>(ticks % 8);
-    const std::uint16_t read = next == pot ? count : board.counts[next];
-    board.probe = {next, static_cast<std::uint8_t>(read / 4)};
-    arm.tick();
-  }
+  for (; board.drivers && ticks < 200; ++ticks) arm.tick();
   return ticks;
 }
 
@@ -252,28 +248,38 @@ unsigned ticks_with_probe(Bench& arm, std::uint8_t pot, std::uint16_t count) {
 
 TEST_CASE("an input that reads an eighth less after ground has no wire, and its fifth reading turns the motors off") {
   for (const std::uint8_t pot : {std::uint8_t{1}, std::uint8_t{6}}) {
-    for (const unsigned brought : {0u, 7u}) {  // charge in eighths
+    for (const int lost : {8, 1}) {  // eighths of the charge
       Following arm;
-      const auto usual = static_cast<std::uint16_t>(board.counts[pot]);
-      CHECK(ticks_with_probe(arm, pot, static_cast<std::uint16_t>(usual * brought / 8 - (brought ? 40 : 0))) <= 40);
+      const int usual = board.counts[pot];
+      CHECK(ticks_with_probe(arm, pot, -usual * lost / 8 - (lost == 1 ? 40 : 0)) <= 40);
       CHECK(arm.stopped_by(wire::Fault::pot_low, pot));
     }
   }
 }
 
-TEST_CASE("a joint that has moved meanwhile is no open input") {
-  Following arm;
-  CHECK(ticks_with_probe(arm, 6, static_cast<std::uint16_t>(board.counts[6] - 60)) == 200);
+TEST_CASE("an input that the pull-ups of the others raise touches one of them, and turns the motors off as well") {
+  for (const std::uint8_t pot : {std::uint8_t{1}, std::uint8_t{6}}) {
+    Following arm;
+    CHECK(ticks_with_probe(arm, pot, 12) <= 40);
+    CHECK(arm.stopped_by(wire::Fault::pot_high, pot));
+  }
 }
 
-TEST_CASE("without rails, or where no pot is, an open input is none") {
+TEST_CASE("a joint that has moved meanwhile is no such input") {
+  for (const int beyond : {-60, 8}) {
+    Following arm;
+    CHECK(ticks_with_probe(arm, 6, beyond) == 200);
+  }
+}
+
+TEST_CASE("without rails, or where no pot is, neither is looked for") {
   params::Table table = bench::unwatched();
   table.leader[2].scale = table.follower[2].scale = 0;
   Bench three(table);
   three.enable();
-  CHECK(ticks_with_probe(three, 6, 0) == 200);
+  CHECK(ticks_with_probe(three, 6, -board.counts[6]) == 200);
   table.rail_counts = 0;
   Bench unchecked(table);
   unchecked.enable();
-  CHECK(ticks_with_probe(unchecked, 5, 0) == 200);
+  CHECK(ticks_with_probe(unchecked, 5, -board.counts[5]) == 200);
 }

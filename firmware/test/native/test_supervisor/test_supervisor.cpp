@@ -51,7 +51,7 @@ struct Arm : Supervisor {
   Arm& run(unsigned ticks, const Seen& seen = calm) {
     for (; ticks > 0; --ticks, ++now) {
       tick(seen);
-      note_rails(seen);
+      note_rails(seen.rail_low, seen.rail_high);
       const auto joint = static_cast<std::uint8_t>(now % joint_count);
       look_at_joint(joint, {0, static_cast<std::int16_t>(seen.distances.of[joint]), 0, 0}, {});
     }

@@ -86,7 +86,8 @@ Next next_tick() {
   wait_for_tick();
   const bool late = hal::tick_begin().late;
   const bool fresh = hal::pot_sums() != nullptr;
-  hal::release_pots();
+  hal::release_pots(0);
+  hal::end_pull_ups();
   hal::tick_end();
   return {late, fresh};
 }
@@ -133,27 +134,31 @@ void margin() {
   WITHIN("the_last_conversion_is_in_20_us_before_the_tick_at_most", latest, 960, 980);
 }
 
-// The pot that is known to have been read after ground when a tick that releases its sums so late has ended.
-uint8_t probed(uint16_t release_us) {
+// The probe of a pot in a tick that releases its sums so late.
+hal::Probe probed(uint8_t pot, uint16_t release_us) {
   wait_for_tick();
   hal::tick_begin();
   while (hal::tick_age_us() < release_us) {
   }
-  hal::release_pots();
+  hal::release_pots(pot);
+  hal::end_pull_ups();
   hal::tick_end();
   while (hal::tick_age_us() < 200) {
   }
-  return hal::last_probe().pot;
+  return hal::last_probe();
 }
 
 void probes() {
   catch_up();
-  uint8_t pots = 0;
-  for (uint8_t i = 0; i < 8; ++i) pots = static_cast<uint8_t>(pots | (1 << probed(40)));
-  EQUAL("each_pot_is_read_after_ground_in_eight_ticks", pots, 255);
-  const uint8_t last = probed(40);
-  EQUAL("not_before_ground_has_been_read", probed(16), last);
-  EQUAL("nor_once_the_chain_is_near", probed(120), last);
+  uint8_t right = 0;
+  for (uint8_t pot = 0; pot < 8; ++pot) {
+    const hal::Probe probe = probed(pot, 40);
+    if (probe.pot == pot && probe.count == probe.usual) ++right;
+  }
+  EQUAL("each_pot_reads_after_ground_what_it_reads_among_the_others", right, 8);
+  EQUAL("and_the_pull_ups_are_off_again", PORTF, 0);
+  EQUAL("not_before_ground_has_been_read", probed(3, 16).pot >= hal::pot_count, true);
+  EQUAL("nor_once_the_chain_is_near", probed(3, 120).pot >= hal::pot_count, true);
   const Next next = next_tick();
   EQUAL("the_chain_is_as_ever", next.late, false);
   EQUAL("and_has_its_samples", next.fresh, true);
@@ -174,7 +179,8 @@ void overrun() {
   hal::tick_end();
   wait_for_tick();
   const hal::TickStart after = hal::tick_begin();
-  hal::release_pots();
+  hal::release_pots(0);
+  hal::end_pull_ups();
   hal::tick_end();
   wait_for_tick();
   finish_tick();

@@ -29,7 +29,7 @@ export const StopReason = new Enumeration("StopReason", {
 export const Fault = new Enumeration("Fault", {
   none: [0, "no fault", "Nothing to do."],
   pot_low: [1, "a potentiometer reads at the lower rail", "Check that potentiometer's wiper and its +5 V wire (an open wire or a short to ground reads 0), then clear the fault."],
-  pot_high: [2, "a potentiometer reads at the upper rail", "Check that potentiometer's ground wire (an open one reads full scale) and for a wiper shorted to +5 V, then clear the fault."],
+  pot_high: [2, "a potentiometer reads at the upper rail, or its wire touches another's", "Check that potentiometer's ground wire (an open one reads full scale) and for a wiper that touches +5 V or another potentiometer's wire, then clear the fault."],
   late_tick: [3, "a control tick had not finished when the next one began", "Lower the telemetry rate, then clear the fault; if it comes back, report the firmware version with `greywhale info`."],
   tracking: [4, "a follower stayed too far from its leader for too long", "Check that joint's motor supply, motor_sign and for something in the arm's way, or raise tracking_limit or tracking_ms, then clear the fault."],
   watchdog: [5, "the firmware had stopped and was restarted", "Clear the fault to go on; if it comes back, check the board's supply and report the firmware version with `greywhale info`."],

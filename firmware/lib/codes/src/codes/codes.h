@@ -28,7 +28,7 @@ enum class StopReason : uint8_t {
 enum class Fault : uint8_t {
   none = 0,  // no fault
   pot_low = 1,  // a potentiometer reads at the lower rail
-  pot_high = 2,  // a potentiometer reads at the upper rail
+  pot_high = 2,  // a potentiometer reads at the upper rail, or its wire touches another's
   late_tick = 3,  // a control tick had not finished when the next one began
   tracking = 4,  // a follower stayed too far from its leader for too long
   watchdog = 5,  // the firmware had stopped and was restarted

@@ -43,6 +43,11 @@ inline void set_duty(bool positive, uint16_t size) {
   pins::compare(joint, size);
 }
 
+// The probe is sampled 48 to 80 cycles after its start, and the tick does 35 cycles of other work until here.
+inline void end_pull_ups() {
+  __builtin_avr_delay_cycles(52);
+  pins::pull_up_pots(0);
+}
 inline bool estop_low() { return pins::estop_low(); }
 inline bool clutch_low() { return pins::clutch_low(); }
 

@@ -91,6 +91,7 @@ inline void start_pwm() {
 
 inline void stop_unused_timers() { TCCR1B = TCCR2B = 0; }
 
+inline void pull_up_pots(uint8_t pots) { PORTF = pots; }
 inline bool estop_low() { return (PINB & estop_bit) == 0; }
 inline bool clutch_low() { return (PINB & clutch_bit) == 0; }
 
@@ -195,6 +196,7 @@ inline void start_pwm() {
 
 inline void stop_unused_timers() {}
 
+inline void pull_up_pots(uint8_t pots) { PORTC = pots & 0x3f; }  // ADC6 and ADC7 have no pull-ups
 inline bool estop_low() { return (PIND & estop_bit) == 0; }
 inline bool clutch_low() { return (PIND & clutch_bit) == 0; }
 

@@ -35,7 +35,7 @@ BEHIND_RINGS volatile uint8_t filling =
 BEHIND_RINGS volatile uint8_t full = 0;  // the main loop's set holds sums that it has not released
 BEHIND_RINGS volatile uint8_t running = 0;  // a tick has started and tick_end() has not been called
 BEHIND_RINGS volatile uint8_t late = 0;
-BEHIND_RINGS volatile uint8_t probed = 0;  // the pot that was read last after ground
+BEHIND_RINGS volatile uint8_t probed = 0;  // the pot that was read last after ground; 15: none in this tick
 BEHIND_RINGS volatile uint8_t probe_count = 0;
 
 // After so many ticks that nobody has begun, the tick's interrupt starts the program anew. It so forestalls the
@@ -84,10 +84,8 @@ ISR(TIMER0_COMPB_vect) {
   ADCSRA = ADC_CHAIN;
   CONVERSION = CHAIN_START;
   SUM_POSITION = static_cast<uint8_t>(reinterpret_cast<uint16_t>(&hal_sums[filling ? 1 : 0][FIRST_POT]));
-  if (pot != ground) {
-    probe_count = static_cast<uint8_t>(ADC / 4);
-    probed = pot % pot_count;
-  }
+  probe_count = static_cast<uint8_t>(ADC / 4);
+  probed = pot & 15;
   // Conversion 1's channel may be set one ADC clock (32 cycles) after the start, not before.
   __builtin_avr_delay_cycles(12);
   ADMUX = channel(FIRST_POT + 1);
@@ -106,7 +104,6 @@ void start_tick() {
   TIMSK0 = (1 << OCIE0A) | (1 << OCIE0B);
 
   CONVERSION = CHAIN_END;
-  probed = pot_count;  // none yet
   ADMUX = ground;
   DIDR0 = 0xff;  // no digital inputs on the pots
   ADCSRB = 0;    // channels 0..7, free-running
@@ -142,18 +139,20 @@ const uint16_t* pot_sums() {
 }
 
 // The tick has had its sums for some time: ground has been read, unless the tick is late.
-void release_pots() {
+void release_pots(uint8_t probed) {
   full = 0;
   if (TCNT0 > latest_probe || CONVERSION != CHAIN_END || (ADCSRA & (1 << ADSC)) != 0) return;
-  ADMUX = channel(static_cast<uint8_t>(probed + 1));
+  ADMUX = channel(probed);
+  pins::pull_up_pots(static_cast<uint8_t>(~pot_bit(probed)));
   ADCSRA = ADC_ONCE;
 }
 
 Probe last_probe() {
   cli();
-  const Probe probe = {probed, probe_count};
+  const uint8_t pot = probed, count = probe_count;
   sei();
-  return probe;
+  const uint16_t* sums = hal_sums[filling ? 0 : 1];
+  return {pot, count, static_cast<uint8_t>(sums[pot & 7] / 16)};
 }
 
 }  // namespace hal

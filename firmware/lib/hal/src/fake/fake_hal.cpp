@@ -52,8 +52,15 @@ const std::uint16_t* pot_sums() {
   return fake::board.samples_ready ? sums : nullptr;
 }
 
-void release_pots() {}
-Probe last_probe() { return fake::board.probe; }
+void release_pots(std::uint8_t probed) { fake::board.probed = probed; }
+void end_pull_ups() {}
+
+Probe last_probe() {
+  const std::uint8_t pot = fake::board.probed;
+  const int count = fake::board.counts[pot];
+  const int probed = count + fake::board.probe_beyond[pot];
+  return {pot, static_cast<std::uint8_t>(probed / 4), static_cast<std::uint8_t>(count / 4)};
+}
 
 bool has_driver(Driver driver) { return driver <= fake::board.last_driver; }
 void choose_driver(Driver driver) { fake::board.driver = driver; }

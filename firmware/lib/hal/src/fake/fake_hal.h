@@ -24,7 +24,8 @@ struct FakeBoard {
   std::uint8_t elapsed = 1;  // of the next tick
   bool late = false;         // the next tick finds the last one unfinished
   bool samples_ready = true;
-  Probe probe = {pot_count, 0};
+  std::uint8_t probed = 0;
+  std::array<int, pot_count> probe_beyond = {};  // what probing adds to each count
   bool estop_low = false;
   bool clutch_low = false;
   Driver last_driver = Driver::two_pwm_high;  // that it has pins for

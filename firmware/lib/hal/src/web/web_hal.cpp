@@ -38,7 +38,8 @@ struct Board {
   std::array<std::uint16_t, pot_count> filling = {}, sums = {};
   unsigned converted = 0;
   bool full = false;
-  Probe probe = {pot_count, 0};
+  std::uint8_t probed = 0;
+  std::uint8_t probe_count = 0;
   bool late = false;
   Driver driver = Driver::pwm_direction;
   bool drivers = false;
@@ -96,7 +97,8 @@ void convert(std::uint8_t pot, unsigned count) {
   ++board.converted;
 }
 
-void probe(std::uint8_t pot, unsigned count) { board.probe = {pot, static_cast<std::uint8_t>(count / 4)}; }
+std::uint8_t probed() { return board.probed; }
+void probe(unsigned count) { board.probe_count = static_cast<std::uint8_t>(count / 4); }
 
 void press_estop(bool pressed) { estop_pressed = pressed; }
 
@@ -159,8 +161,17 @@ void tick_end() { board.pending = false; }
 std::uint16_t tick_age_us() { return board.age_us; }
 
 const std::uint16_t* pot_sums() { return board.full ? board.sums.data() : nullptr; }
-void release_pots() { board.full = false; }
-Probe last_probe() { return board.probe; }
+
+void release_pots(std::uint8_t probed) {
+  board.full = false;
+  board.probed = probed;
+}
+
+void end_pull_ups() {}
+
+Probe last_probe() {
+  return {board.probed, board.probe_count, static_cast<std::uint8_t>(board.sums.at(board.probed) / 16)};
+}
 
 bool has_driver(Driver driver) { return driver <= Driver::two_pwm_high; }
 void choose_driver(Driver driver) { board.driver = driver; }

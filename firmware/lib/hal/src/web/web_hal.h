@@ -28,7 +28,8 @@ void power_off();                 // a byte that was being written is left erase
 void start_tick();                               // what the timer does each millisecond
 void set_age(std::uint16_t us);                  // of this tick
 void convert(std::uint8_t pot, unsigned count);  // one conversion, 10 bits; a tick has all of them
-void probe(std::uint8_t pot, unsigned count);    // one more conversion, after ground
+std::uint8_t probed();                           // the pot that this tick probes
+void probe(unsigned count);                      // what it read
 void press_estop(bool pressed);
 void press_clutch(bool pressed);
 
