@@ -15,7 +15,7 @@ export class ConnectView implements View {
   private readonly bar = el("progress", { hidden: true, attrs: { "aria-label": "Flashing" } });
   private readonly stage = el("p", { class: "quiet", attrs: { role: "status" } });
   private readonly write: HTMLButtonElement;
-  private image: NamedText | null = null;
+  private image: Promise<NamedText> | null = null;
   private busy = false;
 
   constructor(private readonly session: Session, private readonly port: BoardPort) {
@@ -53,7 +53,7 @@ export class ConnectView implements View {
   private async flash(): Promise<void> {
     setText(this.stage, "");
     try {
-      const board = await this.port.flash(this.image, (stage, share) => {
+      const board = await this.port.flash(await this.image, (stage, share) => {
         this.bar.hidden = false;
         this.bar.value = share;
         setText(this.stage, stage);

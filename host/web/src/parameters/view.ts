@@ -32,8 +32,8 @@ export class ParametersView implements View {
       el("th", { attrs: { scope: "row" } }, parameter.name), el("td", {}, this.inputs[place]!), el("td", {}, parameter.unit),
       el("td", {}, physicalText(parameter, parameter.minimum)), el("td", {}, physicalText(parameter, parameter.maximum))));
     this.element = el("section", { class: "card" },
-      el("div", { class: "tools" }, fileField("Upload a controller.toml", ".toml", (file) => file && this.act(() => this.upload(file))),
-        fileField("Restore a parameter file", ".toml", (file) => file && this.act(() => this.restore(file)))),
+      el("div", { class: "tools" }, fileField("Upload a controller.toml", ".toml", (file) => file && this.act(async () => this.upload(await file))),
+        fileField("Restore a parameter file", ".toml", (file) => file && this.act(async () => this.restore(await file)))),
       el("div", { class: "tools" }, this.apply, this.store, this.discard, this.save),
       this.said, this.changes,
       el("div", { class: "scroll" }, el("table", {}, head, el("tbody", {}, ...rows))));

@@ -63,8 +63,8 @@ export function setText(node: Node, text: string): void {
   if (node.textContent !== text) node.textContent = text;
 }
 
-/** A labelled field for a text file; `chosen` hears each one that a person gives, null while there is none. */
-export function fileField(label: string, ending: string, chosen: (file: { name: string; text: string } | null) => void): HTMLLabelElement {
+/** A labelled field for a text file; `chosen` hears at once of each one that a person gives, null while there is none. */
+export function fileField(label: string, ending: string, chosen: (file: Promise<{ name: string; text: string }> | null) => void): HTMLLabelElement {
   const input = el("input", { type: "file", attrs: { accept: ending } });
   input.addEventListener("click", () => { // so that the same file, mended, is taken again
     input.value = "";
@@ -72,8 +72,7 @@ export function fileField(label: string, ending: string, chosen: (file: { name: 
   });
   input.addEventListener("change", () => {
     const [file] = input.files ?? [];
-    if (file) void file.text().then((text) => chosen({ name: file.name, text }));
-    else chosen(null);
+    chosen(file ? file.text().then((text) => ({ name: file.name, text })) : null);
   });
   return el("label", { class: "file" }, el("span", {}, label), input);
 }
