@@ -23,7 +23,7 @@ SIDE_BY_SIDE := $(MAKE) READY= --no-print-directory --jobs=$(shell nproc) --outp
 PYTEST := $(PYTHON) -m pytest -n auto
 
 .DEFAULT_GOAL := help
-.PHONY: help setup ready build firmware demo dashboard report check test pytest lint oracles benchmarks attack docs site dist format lock hooks clean lint-aside $(LINT) $(UNIT_TESTS) $(IMAGES)
+.PHONY: help setup ready build firmware demo dashboard report check test pytest lint oracles benchmarks attack docs site dist format lock hooks clean aside $(LINT) $(UNIT_TESTS) $(IMAGES)
 
 help: ## list the targets
 	@sed -n 's/^\([a-z]*\):[^#]*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 12
@@ -56,16 +56,15 @@ check: $(READY) ## before each commit: lint, unit tests, the short way through t
 	$(PYTEST) -m 'not slow' $(ARGS)
 
 test: $(READY) ## everything: lint, unit tests here and on the simulated board, gates on size, tick and stack, pytest
-	@$(SIDE_BY_SIDE) $(UNIT_TESTS) $(IMAGES)
-	@$(SIDE_BY_SIDE) pytest lint-aside
+	@$(SIDE_BY_SIDE) pytest aside
 
 # With the plus, make shows what it says as it says it.
 pytest: $(READY)
 	+$(PYTEST) $(ARGS)
 
 # With what the tests leave of the cores. Any lower, and it would starve where other programs are busy.
-lint-aside: $(READY)
-	+@nice -n 10 $(MAKE) $(LINT)
+aside: $(READY)
+	+@nice -n 10 $(MAKE) $(UNIT_TESTS) $(IMAGES) $(LINT)
 
 ruff: $(READY)
 	ruff check
