@@ -105,7 +105,7 @@ def test_other_schema_names_both_hashes_and_the_firmware() -> None:
         (NackCode.ERROR_TOO_LARGE, 1 << 8 | 255, "7.97 rad or more"),
         (NackCode.IN_FAULT, Fault.TRACKING, Fault.TRACKING.description),
         (NackCode.POT_BAD, 5 << 8 | Fault.POT_LOW, "(follower potentiometer 1, at the lower rail)"),
-        (NackCode.POT_BAD, 2 << 8 | Fault.POT_HIGH, "(leader potentiometer 2, at the upper rail)"),
+        (NackCode.POT_BAD, 2 << 8 | Fault.POT_HIGH, "(leader potentiometer 2, at the upper rail or on another's wire)"),
     ],
 )
 def test_refusals_say_what_where_and_the_remedy(code: NackCode, detail: int, words: str) -> None:

@@ -45,8 +45,8 @@ def _detail(nack: schema.Nack) -> str:
         case schema.NackCode.IN_FAULT:
             return schema.Fault.of(detail).description
         case schema.NackCode.POT_BAD:
-            rail = {schema.Fault.POT_LOW: ", at the lower rail", schema.Fault.POT_HIGH: ", at the upper rail"}
-            return pot_name(high) + rail.get(schema.Fault.of(low), "")
+            at_low = schema.Fault.of(low) is schema.Fault.POT_LOW
+            return pot_name(high) + (", at the lower rail" if at_low else ", at the upper rail or on another's wire")
         case schema.NackCode.UNKNOWN_TYPE | schema.NackCode.BAD_LENGTH:
             return f"{code.detail} is {detail}"
         case _:

@@ -158,5 +158,5 @@ def _tell_pots(pots: PotReadings | None) -> list[str]:
     if pots is None:
         return ["not looked at: the motors are on"]
     absent = [pot_name(number) for number in range(len(POTS)) if number not in pots.there]
-    told = pots.complaints() or ["none is at a rail"]
+    told = pots.complaints() or ["none is at a rail; wires that touch are found by `greywhale doctor`"]
     return [*told, f"not in use: {', '.join(absent)}"] if absent else told

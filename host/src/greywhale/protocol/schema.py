@@ -77,7 +77,7 @@ class NackCode(Described):
     IN_FAULT = 8, "the board is in the fault state", "Mend the cause and clear the fault first.", "the Fault"
     BUSY_SAVING = 9, "parameters are being written to EEPROM", "Wait until status shows the save as finished and try again.", "0"
     CRC_MISMATCH = 10, "the staged set is not the one that the host means", "Upload the whole set again.", "the CRC of the staged set"
-    POT_BAD = 11, "a potentiometer reads at a rail", "Check that potentiometer's three wires and try again.", "pot (0..3 leader, 4..7 follower) << 8 | Fault"
+    POT_BAD = 11, "a potentiometer's reading is wrong", "Check that potentiometer's three wires, and that none touches another's, then try again.", "pot (0..3 leader, 4..7 follower) << 8 | Fault"
     BOOTING = 12, "the board is still starting", "Try again in a moment.", "0"
     INCONSISTENT = 13, "parameters contradict each other", "Give limit_max above limit_min and a motor_sign of 1 or -1, and upload again.", "the flat index of the first parameter that does not fit"
     LEAD_REFUSED = 14, "the host cannot lead like this", "Correct the motion and start it again.", "joint << 8 | LeadRefusal"

@@ -55,7 +55,7 @@ enum class NackCode : uint8_t {
   in_fault = 8,  // the board is in the fault state
   busy_saving = 9,  // parameters are being written to EEPROM
   crc_mismatch = 10,  // the staged set is not the one that the host means
-  pot_bad = 11,  // a potentiometer reads at a rail
+  pot_bad = 11,  // a potentiometer's reading is wrong
   booting = 12,  // the board is still starting
   inconsistent = 13,  // parameters contradict each other
   lead_refused = 14,  // the host cannot lead like this
