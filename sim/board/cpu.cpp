@@ -16,12 +16,20 @@ extern "C" {
 
 namespace board {
 
+namespace {
+
+constexpr size_t longest_step = 3;  // words from an instruction to the next without a jump
+
+}  // namespace
+
 Cpu::Cpu(avr_t& avr, const Chip& chip)
     : avr_(avr),
       decoder_(avr.flash, (avr.flashend + 1) / 2, chip.wide_pc),
       mask_((avr.flashend + 1) / 2 - 1),
       wide_pc_(chip.wide_pc),
-      decoded_(mask_ + 1) {}
+      decoded_(mask_ + 1) {
+  decoded_.resize(decoded_.size() + longest_step, {Code::wrapped});  // the flash begins anew behind its end
+}
 
 // An instruction also depends on up to two words after it.
 void Cpu::flash_changed(uint32_t address, uint32_t count) {
@@ -80,13 +88,14 @@ avr_flashaddr_t Cpu::run() {
   const Alu alu(flags);
   const uint32_t mask = mask_, flash_end = avr.flashend, first_ram = avr.ioend + 1u, ram_end = avr.ramend;
   const bool wide_pc = wide_pc_;
-  uint32_t pc = avr.pc / 2;
+  const Instruction* op = decoded + avr.pc / 2;
+  const auto pc = [&]() ALWAYS_INLINE { return static_cast<uint32_t>(op - decoded); };
   uint64_t cycle = avr.cycle;
   // An interrupt that waits for one more instruction is a deadline that has passed.
   uint64_t deadline = avr.interrupt_state ? 0 : cycle + avr.run_cycle_count;
 
   const auto with_simavr = [&](auto action) ALWAYS_INLINE {
-    avr.pc = pc * 2;
+    avr.pc = pc() * 2;
     avr.cycle = cycle;
     avr.run_cycle_count = deadline > cycle ? deadline - cycle : 1;
     action();
@@ -138,180 +147,160 @@ avr_flashaddr_t Cpu::run() {
                               ALWAYS_INLINE { return word(R_ZL) | static_cast<uint32_t>(data[high]) << 16; };
   const auto as_signed = [&](unsigned reg) ALWAYS_INLINE { return static_cast<int>(static_cast<int8_t>(data[reg])); };
 
-  for (;;) {
-    const Instruction& op = decoded[pc];
-    uint8_t& d = data[op.d];
-    const auto r = [&]() ALWAYS_INLINE { return static_cast<unsigned>(data[op.r]); };
-    const auto k8 = [&]() ALWAYS_INLINE { return op.k & 0xFFu; };
-    uint32_t next = pc + 1;
-    const auto skip = [&](bool condition, uint32_t words) ALWAYS_INLINE {
-      if (!condition) return;
-      next += words;
-      cycle += words;
-    };
-    switch (op.code) {
-      case Code::undecoded: decoded[pc] = decoder_.decode(pc); continue;
-      case Code::invalid:
-        with_simavr(
-            [&] { crash("an invalid instruction,", static_cast<uint32_t>(flash[2 * pc] | flash[2 * pc + 1] << 8)); });
-        next = pc;
-        break;
-      case Code::nop: break;
+  const auto d = [&]() ALWAYS_INLINE -> uint8_t& { return data[op->d]; };
+  const auto r = [&]() ALWAYS_INLINE { return static_cast<unsigned>(data[op->r]); };
+  const auto k8 = [&]() ALWAYS_INLINE { return op->k & 0xFFu; };
+  const auto at = [&](uint32_t address) ALWAYS_INLINE { return decoded + (address & mask); };
+  const Instruction* next;
+  const auto branch = [&](bool condition) ALWAYS_INLINE {
+    if (!condition) return;
+    next = at(op->k);
+    ++cycle;
+  };
+  const auto skip = [&](bool condition, uint32_t words) ALWAYS_INLINE {
+    if (!condition) return;
+    next += words;
+    cycle += words;
+  };
+  const auto set_flag = [&](uint8_t value) ALWAYS_INLINE {
+    if (op->r == S_I) with_simavr([&] { avr_sreg_set(&avr, S_I, value); });
+    else flags[op->r] = value;
+  };
+  const auto load_and_move = [&](uint32_t pointer, uint32_t moved) ALWAYS_INLINE {
+    const uint8_t value = read(pointer & 0xFFFFu);
+    set_word(op->r, moved);
+    d() = value;
+  };
+  const auto store_and_move = [&](uint32_t pointer, uint32_t moved) ALWAYS_INLINE {
+    write(pointer & 0xFFFFu, d());
+    set_word(op->r, moved);
+  };
+  const auto load_flash_and_move = [&](uint32_t z) ALWAYS_INLINE {
+    d() = flash[z & flash_end];
+    set_word(R_ZL, z + 1);
+    return static_cast<uint8_t>((z + 1) >> 16);
+  };
+  const auto refuse = [&]() ALWAYS_INLINE {
+    crash("an invalid instruction,", static_cast<uint32_t>(flash[2 * pc()] | flash[2 * pc() + 1] << 8));
+  };
+  const auto allow_interrupts = [&]() ALWAYS_INLINE {
+    avr_sreg_set(&avr, S_I, 1);
+    avr_interrupt_reti(&avr);
+  };
+  const auto fall_asleep = [&]() ALWAYS_INLINE {
+    if (!avr_has_pending_interrupts(&avr) || !flags[S_I]) avr.state = cpu_Sleeping;
+  };
 
-      case Code::add: d = alu.add(d, r(), 0); break;
-      case Code::adc: d = alu.add(d, r(), flags[S_C]); break;
-      case Code::sub: d = alu.subtract(d, r(), 0); break;
-      case Code::sbc: d = alu.subtract_with_borrow(d, r()); break;
-      case Code::logic_and: d = alu.logic(d & r()); break;
-      case Code::logic_or: d = alu.logic(d | r()); break;
-      case Code::logic_xor: d = alu.logic(d ^ r()); break;
-      case Code::mov: d = data[op.r]; break;
-      case Code::cp: alu.subtract(d, r(), 0); break;
-      case Code::cpc: alu.subtract_with_borrow(d, r()); break;
-      case Code::subi: d = alu.subtract(d, k8(), 0); break;
-      case Code::sbci: d = alu.subtract_with_borrow(d, k8()); break;
-      case Code::andi: d = alu.logic(d & k8()); break;
-      case Code::ori: d = alu.logic(d | k8()); break;
-      case Code::ldi: d = static_cast<uint8_t>(op.k); break;
-      case Code::cpi: alu.subtract(d, k8(), 0); break;
+  // A jump of its own behind each instruction: the processor foresees it by the instruction before.
+#define LABEL(code) (&&code),
+  static const void* const labels[] = {BOARD_CODES(LABEL)};
+#undef LABEL
+#define DISPATCH \
+  next = op + 1; \
+  goto* labels[static_cast<size_t>(op->code)]
+#define ON(code, ...)              \
+  code:                            \
+  __VA_ARGS__;                     \
+  cycle += op->cycles;             \
+  op = next;                       \
+  if (cycle >= deadline) goto due; \
+  DISPATCH
 
-      case Code::com: d = alu.complement(d); break;
-      case Code::neg: d = alu.subtract(0, d, 0); break;
-      case Code::swap: d = static_cast<uint8_t>(d >> 4 | d << 4); break;
-      case Code::inc: d = alu.increment(d); break;
-      case Code::dec: d = alu.decrement(d); break;
-      case Code::asr: d = alu.shift_right(d, d >> 7); break;
-      case Code::lsr: d = alu.shift_right(d, 0); break;
-      case Code::ror: d = alu.shift_right(d, flags[S_C]); break;
-      case Code::movw: set_word(op.d, word(op.r)); break;
-      case Code::adiw: set_word(op.d, alu.add_word(word(op.d), k8())); break;
-      case Code::sbiw: set_word(op.d, alu.subtract_word(word(op.d), k8())); break;
-      case Code::mul: set_word(0, alu.product(static_cast<int>(d * r()), false)); break;
-      case Code::muls: set_word(0, alu.product(as_signed(op.d) * as_signed(op.r), false)); break;
-      case Code::mulsu: set_word(0, alu.product(as_signed(op.d) * static_cast<int>(r()), false)); break;
-      case Code::fmul: set_word(0, alu.product(static_cast<int>(d * r()), true)); break;
-      case Code::fmuls: set_word(0, alu.product(as_signed(op.d) * as_signed(op.r), true)); break;
-      case Code::fmulsu: set_word(0, alu.product(as_signed(op.d) * static_cast<int>(r()), true)); break;
+  DISPATCH;
 
-      case Code::bset:
-      case Code::bclr: {
-        const uint8_t value = op.code == Code::bset;
-        if (op.r == S_I) with_simavr([&] { avr_sreg_set(&avr, S_I, value); });
-        else flags[op.r] = value;
-        break;
-      }
-      case Code::bst: flags[S_T] = static_cast<uint8_t>(d >> op.r & 1); break;
-      case Code::bld: d = static_cast<uint8_t>((d & ~(1u << op.r)) | static_cast<unsigned>(flags[S_T]) << op.r); break;
-      case Code::sbi: write_io(op.k, read_io(op.k) | op.r); break;
-      case Code::cbi: write_io(op.k, read_io(op.k) & ~static_cast<unsigned>(op.r)); break;
+undecoded:
+  decoded[pc()] = decoder_.decode(pc());
+  DISPATCH;
+wrapped:
+  op -= mask + 1;
+  DISPATCH;
+  ON(invalid, with_simavr(refuse), next = op);
+  ON(nop, {});
 
-      case Code::load: d = read((word(op.r) + op.k) & 0xFFFFu); break;
-      case Code::load_increment: {
-        const uint32_t pointer = word(op.r);
-        const uint8_t value = read(pointer);
-        set_word(op.r, pointer + 1);
-        d = value;
-        break;
-      }
-      case Code::load_decrement: {
-        const uint32_t pointer = (word(op.r) - 1) & 0xFFFFu;
-        const uint8_t value = read(pointer);
-        set_word(op.r, pointer);
-        d = value;
-        break;
-      }
-      case Code::load_direct:
-        d = read(op.k);
-        next = pc + 2;
-        break;
-      case Code::in: d = read_io(op.k); break;
-      case Code::store: write((word(op.r) + op.k) & 0xFFFFu, d); break;
-      case Code::store_increment: {
-        const uint32_t pointer = word(op.r);
-        write(pointer, d);
-        set_word(op.r, pointer + 1);
-        break;
-      }
-      case Code::store_decrement: {
-        const uint32_t pointer = (word(op.r) - 1) & 0xFFFFu;
-        write(pointer, d);
-        set_word(op.r, pointer);
-        break;
-      }
-      case Code::store_direct:
-        write(op.k, d);
-        next = pc + 2;
-        break;
-      case Code::out: write_io(op.k, d); break;
-      case Code::push: push(d); break;
-      case Code::pop: d = pop(); break;
+  ON(add, d() = alu.add(d(), r(), 0));
+  ON(adc, d() = alu.add(d(), r(), flags[S_C]));
+  ON(sub, d() = alu.subtract(d(), r(), 0));
+  ON(sbc, d() = alu.subtract_with_borrow(d(), r()));
+  ON(logic_and, d() = alu.logic(d() & r()));
+  ON(logic_or, d() = alu.logic(d() | r()));
+  ON(logic_xor, d() = alu.logic(d() ^ r()));
+  ON(mov, d() = data[op->r]);
+  ON(cp, alu.subtract(d(), r(), 0));
+  ON(cpc, alu.subtract_with_borrow(d(), r()));
+  ON(subi, d() = alu.subtract(d(), k8(), 0));
+  ON(sbci, d() = alu.subtract_with_borrow(d(), k8()));
+  ON(andi, d() = alu.logic(d() & k8()));
+  ON(ori, d() = alu.logic(d() | k8()));
+  ON(ldi, d() = static_cast<uint8_t>(op->k));
+  ON(cpi, alu.subtract(d(), k8(), 0));
 
-      case Code::lpm: d = flash[word(R_ZL) & flash_end]; break;
-      case Code::elpm: d = flash[extended_z(reg::RAMPZ) & flash_end]; break;
-      case Code::lpm_increment: {
-        const uint32_t z = word(R_ZL);
-        d = flash[z & flash_end];
-        set_word(R_ZL, z + 1);
-        break;
-      }
-      case Code::elpm_increment: {
-        const uint32_t z = extended_z(reg::RAMPZ);
-        d = flash[z & flash_end];
-        data[reg::RAMPZ] = static_cast<uint8_t>((z + 1) >> 16);
-        set_word(R_ZL, z + 1);
-        break;
-      }
-      case Code::spm: with_simavr([&] { avr_ioctl(&avr, AVR_IOCTL_FLASH_SPM, nullptr); }); break;
+  ON(com, d() = alu.complement(d()));
+  ON(neg, d() = alu.subtract(0, d(), 0));
+  ON(swap, d() = static_cast<uint8_t>(d() >> 4 | d() << 4));
+  ON(inc, d() = alu.increment(d()));
+  ON(dec, d() = alu.decrement(d()));
+  ON(asr, d() = alu.shift_right(d(), d() >> 7));
+  ON(lsr, d() = alu.shift_right(d(), 0));
+  ON(ror, d() = alu.shift_right(d(), flags[S_C]));
+  ON(movw, set_word(op->d, word(op->r)));
+  ON(adiw, set_word(op->d, alu.add_word(word(op->d), k8())));
+  ON(sbiw, set_word(op->d, alu.subtract_word(word(op->d), k8())));
+  ON(mul, set_word(0, alu.product(static_cast<int>(d() * r()), false)));
+  ON(muls, set_word(0, alu.product(as_signed(op->d) * as_signed(op->r), false)));
+  ON(mulsu, set_word(0, alu.product(as_signed(op->d) * static_cast<int>(r()), false)));
+  ON(fmul, set_word(0, alu.product(static_cast<int>(d() * r()), true)));
+  ON(fmuls, set_word(0, alu.product(as_signed(op->d) * as_signed(op->r), true)));
+  ON(fmulsu, set_word(0, alu.product(as_signed(op->d) * static_cast<int>(r()), true)));
 
-      case Code::jump: next = op.k; break;
-      case Code::call:
-        push_return(pc + op.d);
-        next = op.k;
-        break;
-      case Code::ijmp: next = word(R_ZL); break;
-      case Code::eijmp: next = extended_z(reg::EIND); break;
-      case Code::icall:
-        push_return(next);
-        next = word(R_ZL);
-        break;
-      case Code::eicall:
-        push_return(next);
-        next = extended_z(reg::EIND);
-        break;
-      case Code::reti:
-        with_simavr([&] {
-          avr_sreg_set(&avr, S_I, 1);
-          avr_interrupt_reti(&avr);
-        });
-        next = pop_return();
-        break;
-      case Code::ret: next = pop_return(); break;
-      case Code::branch_if_set:
-      case Code::branch_if_clear:
-        if (flags[op.r] == (op.code == Code::branch_if_set)) {
-          next = op.k;
-          ++cycle;
-        }
-        break;
-      case Code::cpse: skip(d == r(), op.k); break;
-      case Code::sbrc: skip(!(d >> op.r & 1), op.k); break;
-      case Code::sbrs: skip(d >> op.r & 1, op.k); break;
-      case Code::sbic: skip(!(read_io(op.k) & op.r), op.d); break;
-      case Code::sbis: skip(read_io(op.k) & op.r, op.d); break;
-      case Code::sleep:
-        with_simavr([&] {
-          if (!avr_has_pending_interrupts(&avr) || !flags[S_I]) avr.state = cpu_Sleeping;
-        });
-        break;
-      case Code::wdr: with_simavr([&] { avr_ioctl(&avr, AVR_IOCTL_WATCHDOG_RESET, nullptr); }); break;
-      default: __builtin_unreachable();  // spares the dispatch a range check
-    }
-    cycle += op.cycles;
-    pc = next & mask;
-    if (cycle >= deadline) break;
-  }
+  ON(bset, set_flag(1));
+  ON(bclr, set_flag(0));
+  ON(bst, flags[S_T] = static_cast<uint8_t>(d() >> op->r & 1));
+  ON(bld, d() = static_cast<uint8_t>((d() & ~(1u << op->r)) | static_cast<unsigned>(flags[S_T]) << op->r));
+  ON(sbi, write_io(op->k, read_io(op->k) | op->r));
+  ON(cbi, write_io(op->k, read_io(op->k) & ~static_cast<unsigned>(op->r)));
+
+  ON(load, d() = read((word(op->r) + op->k) & 0xFFFFu));
+  ON(load_increment, load_and_move(word(op->r), word(op->r) + 1));
+  ON(load_decrement, load_and_move(word(op->r) - 1, word(op->r) - 1));
+  ON(load_direct, d() = read(op->k), ++next);
+  ON(in, d() = read_io(op->k));
+  ON(store, write((word(op->r) + op->k) & 0xFFFFu, d()));
+  ON(store_increment, store_and_move(word(op->r), word(op->r) + 1));
+  ON(store_decrement, store_and_move(word(op->r) - 1, word(op->r) - 1));
+  ON(store_direct, write(op->k, d()), ++next);
+  ON(out, write_io(op->k, d()));
+  ON(push, push(d()));
+  ON(pop, d() = pop());
+
+  ON(lpm, d() = flash[word(R_ZL) & flash_end]);
+  ON(elpm, d() = flash[extended_z(reg::RAMPZ) & flash_end]);
+  ON(lpm_increment, load_flash_and_move(word(R_ZL)));
+  ON(elpm_increment, data[reg::RAMPZ] = load_flash_and_move(extended_z(reg::RAMPZ)));
+  ON(spm, with_simavr([&] { avr_ioctl(&avr, AVR_IOCTL_FLASH_SPM, nullptr); }));
+
+  ON(jump, next = at(op->k));
+  ON(call, push_return(pc() + op->d), next = at(op->k));
+  ON(ijmp, next = at(word(R_ZL)));
+  ON(eijmp, next = at(extended_z(reg::EIND)));
+  ON(icall, push_return(pc() + 1), next = at(word(R_ZL)));
+  ON(eicall, push_return(pc() + 1), next = at(extended_z(reg::EIND)));
+  ON(reti, with_simavr(allow_interrupts), next = at(pop_return()));
+  ON(ret, next = at(pop_return()));
+  ON(branch_if_set, branch(flags[op->r]));
+  ON(branch_if_clear, branch(!flags[op->r]));
+  ON(cpse, skip(d() == r(), op->k));
+  ON(sbrc, skip(!(d() >> op->r & 1), op->k));
+  ON(sbrs, skip(d() >> op->r & 1, op->k));
+  ON(sbic, skip(!(read_io(op->k) & op->r), op->d));
+  ON(sbis, skip(read_io(op->k) & op->r, op->d));
+  ON(sleep, with_simavr(fall_asleep));
+  ON(wdr, with_simavr([&] { avr_ioctl(&avr, AVR_IOCTL_WATCHDOG_RESET, nullptr); }));
+#undef ON
+#undef DISPATCH
+
+due:
   avr.cycle = cycle;
-  return pc * 2;
+  return (pc() & mask) * 2;
 }
 
 }  // namespace board

@@ -6,88 +6,31 @@
 
 namespace board {
 
+// clang-format off
+// All of them; the CPU has a label for each.
+#define BOARD_CODES(X) \
+  X(undecoded) X(wrapped) X(invalid) X(nop) \
+  /* arithmetic and logic, registers d and r or the constant k */ \
+  X(add) X(adc) X(sub) X(sbc) X(logic_and) X(logic_or) X(logic_xor) X(mov) X(cp) X(cpc) \
+  X(subi) X(sbci) X(andi) X(ori) X(ldi) X(cpi) \
+  X(com) X(neg) X(swap) X(inc) X(dec) X(asr) X(lsr) X(ror) X(movw) X(adiw) X(sbiw) \
+  X(mul) X(muls) X(mulsu) X(fmul) X(fmuls) X(fmulsu) \
+  /* bits; r is the bit number, or a mask for I/O bits */ \
+  X(bset) X(bclr) X(bst) X(bld) X(sbi) X(cbi) \
+  /* data memory; r is the pointer register of the indirect forms, k the address or the displacement */ \
+  X(load) X(load_increment) X(load_decrement) X(load_direct) X(in) \
+  X(store) X(store_increment) X(store_decrement) X(store_direct) X(out) X(push) X(pop) \
+  /* program memory */ \
+  X(lpm) X(lpm_increment) X(elpm) X(elpm_increment) X(spm) \
+  /* flow; k is the target, or the number of words to skip */ \
+  X(jump) X(call) X(ijmp) X(eijmp) X(icall) X(eicall) X(ret) X(reti) X(branch_if_set) X(branch_if_clear) \
+  X(cpse) X(sbrc) X(sbrs) X(sbic) X(sbis) X(sleep) X(wdr)
+// clang-format on
+
 enum class Code : uint8_t {
-  undecoded,
-  invalid,
-  nop,
-  // arithmetic and logic, registers d and r or the constant k
-  add,
-  adc,
-  sub,
-  sbc,
-  logic_and,
-  logic_or,
-  logic_xor,
-  mov,
-  cp,
-  cpc,
-  subi,
-  sbci,
-  andi,
-  ori,
-  ldi,
-  cpi,
-  com,
-  neg,
-  swap,
-  inc,
-  dec,
-  asr,
-  lsr,
-  ror,
-  movw,
-  adiw,
-  sbiw,
-  mul,
-  muls,
-  mulsu,
-  fmul,
-  fmuls,
-  fmulsu,
-  // bits; r is the bit number, or a mask for I/O bits
-  bset,
-  bclr,
-  bst,
-  bld,
-  sbi,
-  cbi,
-  // data memory; r is the pointer register of the indirect forms, k the address or the displacement
-  load,
-  load_increment,
-  load_decrement,
-  load_direct,
-  in,
-  store,
-  store_increment,
-  store_decrement,
-  store_direct,
-  out,
-  push,
-  pop,
-  // program memory
-  lpm,
-  lpm_increment,
-  elpm,
-  elpm_increment,
-  spm,
-  // flow; k is the target, or the number of words to skip
-  jump,
-  call,
-  ijmp,
-  eijmp,
-  icall,
-  eicall,
-  ret,
-  reti,
-  branch_if_set,
-  branch_if_clear,
-  cpse,
-  sbrc,
-  sbrs,
-  sbic,
-  sbis,
-  sleep,
-  wdr,
+#define BOARD_ENUMERATOR(code) code,
+  BOARD_CODES(BOARD_ENUMERATOR)
+#undef BOARD_ENUMERATOR
 };
 
 struct Instruction {

@@ -104,6 +104,31 @@ def test_every_instruction_does_what_simavr_does(tmp_path: Path, chip: str, seed
     assert fast.flash() == reference.flash()
 
 
+NOP, JMP_0, LDS_R0, SBRC_R0_0 = b"\0\0", b"\x0c\x94\0\0", b"\x00\x90", b"\x00\xfc"
+
+
+@pytest.mark.parametrize(
+    ("last", "first", "then"),
+    [(NOP, NOP, 0), (LDS_R0, b"\x00\x02", 2), (SBRC_R0_0, NOP, 2), (SBRC_R0_0, JMP_0, 4)],
+    ids=["a word", "two words", "a skip over one word", "a skip over two"],
+)
+@pytest.mark.parametrize("chip", ["atmega2560", "atmega328p"])
+def test_behind_the_end_of_the_flash_comes_its_beginning(
+    tmp_path: Path, chip: str, last: bytes, first: bytes, then: int
+) -> None:
+    image = tmp_path / "full.hex"
+    image.write_text(hex_text(first.ljust(FLASH_BYTES[chip] - len(last), b"\0") + last))
+    board = Board(chip)
+    load_hex(board, image)
+    board.power_on(1)
+    board.poke(0, b"\0")
+    board.pc = FLASH_BYTES[chip] - len(last)
+    board.run_until(board.cycle + 1)
+    assert board.pc == then
+    board.run_until(board.cycle + 1)
+    assert board.pc == then + len(NOP)
+
+
 SKIP_WORD = """
 volatile uint8_t low;
 int main(void) {
