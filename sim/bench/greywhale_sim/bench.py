@@ -237,6 +237,7 @@ class Bench:
         leader_pots, follower_pots = self.leader_pots.millivolts, self.follower_pots.millivolts
         leader_millivolts, follower_millivolts = millivolts[:4], millivolts[4:]
         target = board.cycle // SLICE_CYCLES * SLICE_CYCLES
+        held = None  # the pose in which the plant was held in the slice before
         for _ in range(count):
             target += SLICE_CYCLES
             pins = outputs()
@@ -246,8 +247,11 @@ class Bench:
                 self._coast()
             if leader.hold is None:
                 step(self.voltages, SLICE_S, angles)
+            elif leader.hold is held and isinstance(self.plant, arm.Arm):  # half of what `place` takes
+                self.plant.reset(angles)
             else:
                 self.place(leader.hold)
+            held = leader.hold
             advance(self._enabled, angles)
             leader_pots(leader.angles, leader_millivolts)
             follower_pots(angles, follower_millivolts)

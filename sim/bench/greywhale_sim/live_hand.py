@@ -14,16 +14,18 @@ class LiveHand:
     """`angles` (4,) rad follow `target` from slice to slice."""
 
     def __init__(self, angles: Floats) -> None:
-        self.angles = angles.copy()
         self.target = angles.copy()
-        self._speeds: Floats = np.zeros(len(angles))
+        self.take(angles)
 
     def take(self, angles: Floats) -> None:
         """Begin anew from where the arm is."""
         self.angles = angles.copy()
-        self._speeds[:] = 0.0
+        self._speeds = [0.0] * len(angles)
 
     def step(self, slice_s: float) -> None:
-        pull = PULL * PULL * (self.target - self.angles) - 2.0 * PULL * self._speeds
-        self._speeds = np.clip(self._speeds + slice_s * pull, -FASTEST, FASTEST)
-        self.angles = self.angles + slice_s * self._speeds
+        angles, speeds = self.angles.tolist(), self._speeds
+        for joint, target in enumerate(self.target.tolist()):  # quicker than array arithmetic on so few numbers
+            pull = PULL * PULL * (target - angles[joint]) - 2.0 * PULL * speeds[joint]
+            speeds[joint] = min(max(speeds[joint] + slice_s * pull, -FASTEST), FASTEST)
+            angles[joint] += slice_s * speeds[joint]
+        self.angles = np.array(angles)
