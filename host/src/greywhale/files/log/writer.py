@@ -23,6 +23,7 @@ from greywhale.files.log.layout import COMPLETE, HEADING, INTERRUPTED, STATES, T
 from greywhale.files.log.parameters import lines_of
 from greywhale.protocol.joints import ALL, listed
 
+_ROW = ",".join(["%.6f"] * 9 + ["%.3f"] * 4) + ",%s\n"  # s, rad, V
 _ROWS_PER_WRITE = 256
 # What is known only at the end: the header keeps so many characters free for each number or word, and for the reason.
 _ROOM = 12
@@ -85,9 +86,7 @@ class LogWriter:
             raise ValueError(f"time must increase by whole microseconds, but {time_us} us follows {self._last_us} us")
         self._last_us = time_us
         self.rows += 1
-        angles = ",".join([f"{value:.6f}" for value in (*leader, *follower)])
-        volts = ",".join([f"{value:.3f}" for value in voltage])
-        self._waiting.append(f"{time_us / 1e6:.6f},{angles},{volts},{state}\n")
+        self._waiting.append(_ROW % (time_us / 1e6, *numbers[1:], state))
         if len(self._waiting) >= _ROWS_PER_WRITE:
             self.flush()
 
