@@ -76,7 +76,9 @@ class LocalWorkers:
     def executor(self) -> Iterator[Executor]:
         context = multiprocessing.get_context("spawn")
         theirs, ours = context.Pipe(duplex=False)
-        with safe_path():  # the pool's semaphores start multiprocessing's resource tracker
+        # The pool's semaphores start multiprocessing's resource tracker, which would find one lost if Ctrl-C came
+        # between its making and its entry.
+        with safe_path(), _hold_interrupts():
             pool = _Pool(self.at_once, mp_context=context, initializer=_prepare, initargs=(theirs.recv,))
         try:
             yield pool
