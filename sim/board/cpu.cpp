@@ -18,6 +18,7 @@ namespace board {
 
 namespace {
 
+constexpr uint32_t first_io = AVR_IO_TO_DATA(0);
 constexpr size_t longest_step = 3;  // words from an instruction to the next without a jump
 
 }  // namespace
@@ -78,229 +79,281 @@ void Cpu::write_register(uint32_t address, uint8_t value) {
   avr_.data[address] = value;
 }
 
-// One long function on purpose: everything it needs stays in registers from one instruction to the next.
-avr_flashaddr_t Cpu::run() {
-  avr_t& avr = avr_;
-  uint8_t* const data = avr.data;
-  uint8_t* const flags = avr.sreg;
-  const uint8_t* const flash = avr.flash;
-  Instruction* const decoded = decoded_.data();
-  const Alu alu(flags);
-  const uint32_t mask = mask_, flash_end = avr.flashend, first_ram = avr.ioend + 1u, ram_end = avr.ramend;
-  const bool wide_pc = wide_pc_;
-  const Instruction* op = decoded + avr.pc / 2;
-  const auto pc = [&]() ALWAYS_INLINE { return static_cast<uint32_t>(op - decoded); };
-  uint64_t cycle = avr.cycle;
-  // An interrupt that waits for one more instruction is a deadline that has passed.
-  uint64_t deadline = avr.interrupt_state ? 0 : cycle + avr.run_cycle_count;
+// What the instructions of one run work on. Nothing but run() knows its address, so a compiler keeps its members in
+// registers from one instruction to the next.
+struct Cpu::State {
+  explicit State(Cpu& owner) : cpu(owner) {}
 
-  const auto with_simavr = [&](auto action) ALWAYS_INLINE {
+  ALWAYS_INLINE uint32_t pc() const { return static_cast<uint32_t>(op - decoded); }
+  ALWAYS_INLINE const Instruction* at(uint32_t address) const { return decoded + (address & mask); }
+
+  // ---- simavr ----
+
+  ALWAYS_INLINE void hand_over() const {
     avr.pc = pc() * 2;
     avr.cycle = cycle;
     avr.run_cycle_count = deadline > cycle ? deadline - cycle : 1;
-    action();
+  }
+  ALWAYS_INLINE void take_back() {
     cycle = avr.cycle;
     deadline = avr.interrupt_state || avr.state != cpu_Running ? 0 : cycle + avr.run_cycle_count;
-  };
-  const auto read_io = [&](uint32_t address) ALWAYS_INLINE {
-    uint8_t value = 0;
-    with_simavr([&] { value = read_register(address); });
+  }
+  ALWAYS_INLINE void refuse() {
+    hand_over();
+    cpu.crash("an invalid instruction,", static_cast<uint32_t>(flash[2 * pc()] | flash[2 * pc() + 1] << 8));
+    take_back();
+  }
+  ALWAYS_INLINE void request(uint32_t what) {
+    hand_over();
+    avr_ioctl(&avr, what, nullptr);
+    take_back();
+  }
+  ALWAYS_INLINE void set_flag(uint8_t value) {
+    alu.store(flags);
+    hand_over();
+    avr_sreg_set(&avr, op->r, value);
+    take_back();
+    alu.load(flags);
+  }
+  ALWAYS_INLINE void allow_interrupts() {
+    hand_over();
+    avr_sreg_set(&avr, S_I, 1);
+    avr_interrupt_reti(&avr);
+    take_back();
+  }
+  ALWAYS_INLINE void fall_asleep() {
+    hand_over();
+    if (!avr_has_pending_interrupts(&avr) || !flags[S_I]) avr.state = cpu_Sleeping;
+    take_back();
+  }
+
+  // ---- operands and memory ----
+
+  ALWAYS_INLINE uint8_t& d() const { return data[op->d]; }
+  ALWAYS_INLINE unsigned r() const { return data[op->r]; }
+  ALWAYS_INLINE unsigned k8() const { return op->k & 0xFFu; }
+  ALWAYS_INLINE int signed_d() const { return static_cast<int8_t>(data[op->d]); }
+  ALWAYS_INLINE int signed_r() const { return static_cast<int8_t>(data[op->r]); }
+
+  ALWAYS_INLINE bool in_ram(uint32_t address) const { return __builtin_expect(address - first_ram < ram_size, true); }
+  ALWAYS_INLINE uint8_t read_io(uint32_t address) {
+    if (address - first_io < MAX_IOs && !avr.io[address - first_io].r.c && address != reg::SREG) return data[address];
+    if (address == reg::SREG) alu.store(flags);
+    hand_over();
+    const uint8_t value = cpu.read_register(address);
+    take_back();
     return value;
-  };
-  const auto write_io = [&](uint32_t address, unsigned value) ALWAYS_INLINE {
-    with_simavr([&] { write_register(address, static_cast<uint8_t>(value)); });
-  };
-  const auto read = [&](uint32_t address) ALWAYS_INLINE {
-    return address >= first_ram && address <= ram_end ? data[address] : read_io(address);
-  };
-  const auto write = [&](uint32_t address, uint8_t value) ALWAYS_INLINE {
-    if (address >= first_ram && address <= ram_end) data[address] = value;
+  }
+  ALWAYS_INLINE void write_io(uint32_t address, unsigned value) {
+    if (address - first_io < MAX_IOs && !avr.io[address - first_io].w.c && address != reg::SREG) {
+      data[address] = static_cast<uint8_t>(value);
+      return;
+    }
+    hand_over();
+    cpu.write_register(address, static_cast<uint8_t>(value));
+    take_back();
+    if (address == reg::SREG) alu.load(flags);
+  }
+  ALWAYS_INLINE uint8_t read(uint32_t address) { return in_ram(address) ? data[address] : read_io(address); }
+  ALWAYS_INLINE void write(uint32_t address, uint8_t value) {
+    if (in_ram(address)) data[address] = value;
     else write_io(address, value);
-  };
-  const auto word = [&](unsigned low) ALWAYS_INLINE { return data[low] | static_cast<uint32_t>(data[low + 1]) << 8; };
-  const auto set_word = [&](unsigned low, uint32_t value) ALWAYS_INLINE {
+  }
+  ALWAYS_INLINE uint32_t word(unsigned low) const { return data[low] | static_cast<uint32_t>(data[low + 1]) << 8; }
+  ALWAYS_INLINE void set_word(unsigned low, uint32_t value) {
     data[low] = static_cast<uint8_t>(value);
     data[low + 1] = static_cast<uint8_t>(value >> 8);
-  };
-  const auto push = [&](uint32_t value) ALWAYS_INLINE {
+  }
+  ALWAYS_INLINE uint32_t extended_z(uint16_t high) const {
+    return word(R_ZL) | static_cast<uint32_t>(data[high]) << 16;
+  }
+  ALWAYS_INLINE void load_and_move(uint32_t pointer, uint32_t moved) {
+    const uint8_t value = read(pointer & 0xFFFFu);
+    set_word(op->r, moved);
+    d() = value;
+  }
+  ALWAYS_INLINE void store_and_move(uint32_t pointer, uint32_t moved) {
+    write(pointer & 0xFFFFu, d());
+    set_word(op->r, moved);
+  }
+  ALWAYS_INLINE uint8_t load_flash_and_move(uint32_t z) {
+    d() = flash[z & flash_end];
+    set_word(R_ZL, z + 1);
+    return static_cast<uint8_t>((z + 1) >> 16);
+  }
+
+  // ---- stack and flow ----
+
+  ALWAYS_INLINE void push(uint32_t value) {
     const uint32_t stack = word(reg::SPL);
     write(stack, static_cast<uint8_t>(value));
     set_word(reg::SPL, stack - 1);
-  };
-  const auto pop = [&]() ALWAYS_INLINE {
+  }
+  ALWAYS_INLINE uint8_t pop() {
     const uint32_t stack = (word(reg::SPL) + 1) & 0xFFFFu;
     const uint8_t value = read(stack);
     set_word(reg::SPL, stack);
     return value;
-  };
-  const auto push_return = [&](uint32_t address) ALWAYS_INLINE {
-    push(address);
-    push(address >> 8);
-    if (wide_pc) push(address >> 16);
-  };
-  const auto pop_return = [&]() ALWAYS_INLINE {
+  }
+  ALWAYS_INLINE void call(uint32_t target, uint32_t back) {
+    push(back);
+    push(back >> 8);
+    if (wide_pc) push(back >> 16);
+    next = at(target);
+  }
+  ALWAYS_INLINE void go_back() {
     uint32_t address = wide_pc ? static_cast<uint32_t>(pop()) << 16 : 0u;
     address |= static_cast<uint32_t>(pop()) << 8;
-    return address | pop();
-  };
-  const auto extended_z = [&](uint16_t high)
-                              ALWAYS_INLINE { return word(R_ZL) | static_cast<uint32_t>(data[high]) << 16; };
-  const auto as_signed = [&](unsigned reg) ALWAYS_INLINE { return static_cast<int>(static_cast<int8_t>(data[reg])); };
-
-  const auto d = [&]() ALWAYS_INLINE -> uint8_t& { return data[op->d]; };
-  const auto r = [&]() ALWAYS_INLINE { return static_cast<unsigned>(data[op->r]); };
-  const auto k8 = [&]() ALWAYS_INLINE { return op->k & 0xFFu; };
-  const auto at = [&](uint32_t address) ALWAYS_INLINE { return decoded + (address & mask); };
-  const Instruction* next;
-  const auto branch = [&](bool condition) ALWAYS_INLINE {
+    next = at(address | pop());
+  }
+  ALWAYS_INLINE void branch(bool condition) {
     if (!condition) return;
     next = at(op->k);
     ++cycle;
-  };
-  const auto skip = [&](bool condition, uint32_t words) ALWAYS_INLINE {
+  }
+  ALWAYS_INLINE void skip(bool condition, uint32_t words) {
     if (!condition) return;
     next += words;
     cycle += words;
-  };
-  const auto set_flag = [&](uint8_t value) ALWAYS_INLINE {
-    if (op->r == S_I) with_simavr([&] { avr_sreg_set(&avr, S_I, value); });
-    else flags[op->r] = value;
-  };
-  const auto load_and_move = [&](uint32_t pointer, uint32_t moved) ALWAYS_INLINE {
-    const uint8_t value = read(pointer & 0xFFFFu);
-    set_word(op->r, moved);
-    d() = value;
-  };
-  const auto store_and_move = [&](uint32_t pointer, uint32_t moved) ALWAYS_INLINE {
-    write(pointer & 0xFFFFu, d());
-    set_word(op->r, moved);
-  };
-  const auto load_flash_and_move = [&](uint32_t z) ALWAYS_INLINE {
-    d() = flash[z & flash_end];
-    set_word(R_ZL, z + 1);
-    return static_cast<uint8_t>((z + 1) >> 16);
-  };
-  const auto refuse = [&]() ALWAYS_INLINE {
-    crash("an invalid instruction,", static_cast<uint32_t>(flash[2 * pc()] | flash[2 * pc() + 1] << 8));
-  };
-  const auto allow_interrupts = [&]() ALWAYS_INLINE {
-    avr_sreg_set(&avr, S_I, 1);
-    avr_interrupt_reti(&avr);
-  };
-  const auto fall_asleep = [&]() ALWAYS_INLINE {
-    if (!avr_has_pending_interrupts(&avr) || !flags[S_I]) avr.state = cpu_Sleeping;
-  };
+  }
+
+  Cpu& cpu;
+  avr_t& avr = cpu.avr_;
+  uint8_t* const data = avr.data;
+  uint8_t* const flags = avr.sreg;
+  const uint8_t* const flash = avr.flash;
+  Instruction* const decoded = cpu.decoded_.data();
+  const uint32_t mask = cpu.mask_, flash_end = avr.flashend, first_ram = avr.ioend + 1u,
+                 ram_size = avr.ramend - avr.ioend;
+  const bool wide_pc = cpu.wide_pc_;
+  Alu alu{flags};
+  const Instruction* op = decoded + avr.pc / 2;
+  const Instruction* next = op;
+  uint64_t cycle = avr.cycle;
+  // An interrupt that waits for one more instruction is a deadline that has passed.
+  uint64_t deadline = avr.interrupt_state ? 0 : cycle + avr.run_cycle_count;
+};
+
+avr_flashaddr_t Cpu::run() {
+  State s(*this);
 
   // A jump of its own behind each instruction: the processor foresees it by the instruction before.
 #define LABEL(code) (&&code),
   static const void* const labels[] = {BOARD_CODES(LABEL)};
 #undef LABEL
-#define DISPATCH \
-  next = op + 1; \
-  goto* labels[static_cast<size_t>(op->code)]
-#define ON(code, ...)              \
-  code:                            \
-  __VA_ARGS__;                     \
-  cycle += op->cycles;             \
-  op = next;                       \
-  if (cycle >= deadline) goto due; \
+#define DISPATCH     \
+  s.next = s.op + 1; \
+  goto* labels[static_cast<size_t>(s.op->code)]
+#define ON(code, ...)                  \
+  code:                                \
+  __VA_ARGS__;                         \
+  s.cycle += s.op->cycles;             \
+  s.op = s.next;                       \
+  if (s.cycle >= s.deadline) goto due; \
   DISPATCH
 
   DISPATCH;
 
 undecoded:
-  decoded[pc()] = decoder_.decode(pc());
+  s.decoded[s.pc()] = decoder_.decode(s.pc());
   DISPATCH;
 wrapped:
-  op -= mask + 1;
+  s.op -= mask_ + 1;
   DISPATCH;
-  ON(invalid, with_simavr(refuse), next = op);
+  ON(invalid, s.refuse(), s.next = s.op);
   ON(nop, {});
 
-  ON(add, d() = alu.add(d(), r(), 0));
-  ON(adc, d() = alu.add(d(), r(), flags[S_C]));
-  ON(sub, d() = alu.subtract(d(), r(), 0));
-  ON(sbc, d() = alu.subtract_with_borrow(d(), r()));
-  ON(logic_and, d() = alu.logic(d() & r()));
-  ON(logic_or, d() = alu.logic(d() | r()));
-  ON(logic_xor, d() = alu.logic(d() ^ r()));
-  ON(mov, d() = data[op->r]);
-  ON(cp, alu.subtract(d(), r(), 0));
-  ON(cpc, alu.subtract_with_borrow(d(), r()));
-  ON(subi, d() = alu.subtract(d(), k8(), 0));
-  ON(sbci, d() = alu.subtract_with_borrow(d(), k8()));
-  ON(andi, d() = alu.logic(d() & k8()));
-  ON(ori, d() = alu.logic(d() | k8()));
-  ON(ldi, d() = static_cast<uint8_t>(op->k));
-  ON(cpi, alu.subtract(d(), k8(), 0));
+  ON(add, s.d() = s.alu.add(s.d(), s.r(), 0));
+  ON(adc, s.d() = s.alu.add(s.d(), s.r(), s.alu.carry()));
+  ON(sub, s.d() = s.alu.subtract(s.d(), s.r(), 0));
+  ON(sbc, s.d() = s.alu.subtract_with_borrow(s.d(), s.r()));
+  ON(logic_and, s.d() = s.alu.logic(s.d() & s.r()));
+  ON(logic_or, s.d() = s.alu.logic(s.d() | s.r()));
+  ON(logic_xor, s.d() = s.alu.logic(s.d() ^ s.r()));
+  ON(mov, s.d() = s.data[s.op->r]);
+  ON(cp, s.alu.subtract(s.d(), s.r(), 0));
+  ON(cpc, s.alu.subtract_with_borrow(s.d(), s.r()));
+  ON(subi, s.d() = s.alu.subtract(s.d(), s.k8(), 0));
+  ON(sbci, s.d() = s.alu.subtract_with_borrow(s.d(), s.k8()));
+  ON(andi, s.d() = s.alu.logic(s.d() & s.k8()));
+  ON(ori, s.d() = s.alu.logic(s.d() | s.k8()));
+  ON(ldi, s.d() = static_cast<uint8_t>(s.op->k));
+  ON(cpi, s.alu.subtract(s.d(), s.k8(), 0));
 
-  ON(com, d() = alu.complement(d()));
-  ON(neg, d() = alu.subtract(0, d(), 0));
-  ON(swap, d() = static_cast<uint8_t>(d() >> 4 | d() << 4));
-  ON(inc, d() = alu.increment(d()));
-  ON(dec, d() = alu.decrement(d()));
-  ON(asr, d() = alu.shift_right(d(), d() >> 7));
-  ON(lsr, d() = alu.shift_right(d(), 0));
-  ON(ror, d() = alu.shift_right(d(), flags[S_C]));
-  ON(movw, set_word(op->d, word(op->r)));
-  ON(adiw, set_word(op->d, alu.add_word(word(op->d), k8())));
-  ON(sbiw, set_word(op->d, alu.subtract_word(word(op->d), k8())));
-  ON(mul, set_word(0, alu.product(static_cast<int>(d() * r()), false)));
-  ON(muls, set_word(0, alu.product(as_signed(op->d) * as_signed(op->r), false)));
-  ON(mulsu, set_word(0, alu.product(as_signed(op->d) * static_cast<int>(r()), false)));
-  ON(fmul, set_word(0, alu.product(static_cast<int>(d() * r()), true)));
-  ON(fmuls, set_word(0, alu.product(as_signed(op->d) * as_signed(op->r), true)));
-  ON(fmulsu, set_word(0, alu.product(as_signed(op->d) * static_cast<int>(r()), true)));
+  ON(com, s.d() = s.alu.complement(s.d()));
+  ON(neg, s.d() = s.alu.subtract(0, s.d(), 0));
+  ON(swap, s.d() = static_cast<uint8_t>(s.d() >> 4 | s.d() << 4));
+  ON(inc, s.d() = s.alu.increment(s.d()));
+  ON(dec, s.d() = s.alu.decrement(s.d()));
+  ON(asr, s.d() = s.alu.shift_right(s.d(), s.d() >> 7));
+  ON(lsr, s.d() = s.alu.shift_right(s.d(), 0));
+  ON(ror, s.d() = s.alu.shift_right(s.d(), s.alu.carry()));
+  ON(movw, s.set_word(s.op->d, s.word(s.op->r)));
+  ON(adiw, s.set_word(s.op->d, s.alu.add_word(s.word(s.op->d), s.k8())));
+  ON(sbiw, s.set_word(s.op->d, s.alu.subtract_word(s.word(s.op->d), s.k8())));
+  ON(mul, s.set_word(0, s.alu.product(static_cast<int>(s.d() * s.r()), false)));
+  ON(muls, s.set_word(0, s.alu.product(s.signed_d() * s.signed_r(), false)));
+  ON(mulsu, s.set_word(0, s.alu.product(s.signed_d() * static_cast<int>(s.r()), false)));
+  ON(fmul, s.set_word(0, s.alu.product(static_cast<int>(s.d() * s.r()), true)));
+  ON(fmuls, s.set_word(0, s.alu.product(s.signed_d() * s.signed_r(), true)));
+  ON(fmulsu, s.set_word(0, s.alu.product(s.signed_d() * static_cast<int>(s.r()), true)));
 
-  ON(bset, set_flag(1));
-  ON(bclr, set_flag(0));
-  ON(bst, flags[S_T] = static_cast<uint8_t>(d() >> op->r & 1));
-  ON(bld, d() = static_cast<uint8_t>((d() & ~(1u << op->r)) | static_cast<unsigned>(flags[S_T]) << op->r));
-  ON(sbi, write_io(op->k, read_io(op->k) | op->r));
-  ON(cbi, write_io(op->k, read_io(op->k) & ~static_cast<unsigned>(op->r)));
+  ON(bset, s.set_flag(1));
+  ON(bclr, s.set_flag(0));
+  ON(bst, s.flags[S_T] = static_cast<uint8_t>(s.d() >> s.op->r & 1));
+  ON(bld, s.d() = static_cast<uint8_t>((s.d() & ~(1u << s.op->r)) | static_cast<unsigned>(s.flags[S_T]) << s.op->r));
+  ON(sbi, s.write_io(s.op->k, s.read_io(s.op->k) | s.op->r));
+  ON(cbi, s.write_io(s.op->k, s.read_io(s.op->k) & ~static_cast<unsigned>(s.op->r)));
 
-  ON(load, d() = read((word(op->r) + op->k) & 0xFFFFu));
-  ON(load_increment, load_and_move(word(op->r), word(op->r) + 1));
-  ON(load_decrement, load_and_move(word(op->r) - 1, word(op->r) - 1));
-  ON(load_direct, d() = read(op->k), ++next);
-  ON(in, d() = read_io(op->k));
-  ON(store, write((word(op->r) + op->k) & 0xFFFFu, d()));
-  ON(store_increment, store_and_move(word(op->r), word(op->r) + 1));
-  ON(store_decrement, store_and_move(word(op->r) - 1, word(op->r) - 1));
-  ON(store_direct, write(op->k, d()), ++next);
-  ON(out, write_io(op->k, d()));
-  ON(push, push(d()));
-  ON(pop, d() = pop());
+  ON(load, s.d() = s.read((s.word(s.op->r) + s.op->k) & 0xFFFFu));
+  ON(load_increment, s.load_and_move(s.word(s.op->r), s.word(s.op->r) + 1));
+  ON(load_decrement, s.load_and_move(s.word(s.op->r) - 1, s.word(s.op->r) - 1));
+  ON(load_direct, s.d() = s.read(s.op->k), ++s.next);
+  ON(in, s.d() = s.read_io(s.op->k));
+  ON(store, s.write((s.word(s.op->r) + s.op->k) & 0xFFFFu, s.d()));
+  ON(store_increment, s.store_and_move(s.word(s.op->r), s.word(s.op->r) + 1));
+  ON(store_decrement, s.store_and_move(s.word(s.op->r) - 1, s.word(s.op->r) - 1));
+  ON(store_direct, s.write(s.op->k, s.d()), ++s.next);
+  ON(out, s.write_io(s.op->k, s.d()));
+  ON(push, s.push(s.d()));
+  ON(pop, s.d() = s.pop());
 
-  ON(lpm, d() = flash[word(R_ZL) & flash_end]);
-  ON(elpm, d() = flash[extended_z(reg::RAMPZ) & flash_end]);
-  ON(lpm_increment, load_flash_and_move(word(R_ZL)));
-  ON(elpm_increment, data[reg::RAMPZ] = load_flash_and_move(extended_z(reg::RAMPZ)));
-  ON(spm, with_simavr([&] { avr_ioctl(&avr, AVR_IOCTL_FLASH_SPM, nullptr); }));
+  ON(lpm, s.d() = s.flash[s.word(R_ZL) & s.flash_end]);
+  ON(elpm, s.d() = s.flash[s.extended_z(reg::RAMPZ) & s.flash_end]);
+  ON(lpm_increment, s.load_flash_and_move(s.word(R_ZL)));
+  ON(elpm_increment, s.data[reg::RAMPZ] = s.load_flash_and_move(s.extended_z(reg::RAMPZ)));
+  ON(spm, s.request(AVR_IOCTL_FLASH_SPM));
 
-  ON(jump, next = at(op->k));
-  ON(call, push_return(pc() + op->d), next = at(op->k));
-  ON(ijmp, next = at(word(R_ZL)));
-  ON(eijmp, next = at(extended_z(reg::EIND)));
-  ON(icall, push_return(pc() + 1), next = at(word(R_ZL)));
-  ON(eicall, push_return(pc() + 1), next = at(extended_z(reg::EIND)));
-  ON(reti, with_simavr(allow_interrupts), next = at(pop_return()));
-  ON(ret, next = at(pop_return()));
-  ON(branch_if_set, branch(flags[op->r]));
-  ON(branch_if_clear, branch(!flags[op->r]));
-  ON(cpse, skip(d() == r(), op->k));
-  ON(sbrc, skip(!(d() >> op->r & 1), op->k));
-  ON(sbrs, skip(d() >> op->r & 1, op->k));
-  ON(sbic, skip(!(read_io(op->k) & op->r), op->d));
-  ON(sbis, skip(read_io(op->k) & op->r, op->d));
-  ON(sleep, with_simavr(fall_asleep));
-  ON(wdr, with_simavr([&] { avr_ioctl(&avr, AVR_IOCTL_WATCHDOG_RESET, nullptr); }));
+  ON(jump, s.next = s.at(s.op->k));
+  ON(call, s.call(s.op->k, s.pc() + s.op->d));
+  ON(ijmp, s.next = s.at(s.word(R_ZL)));
+  ON(eijmp, s.next = s.at(s.extended_z(reg::EIND)));
+  ON(icall, s.call(s.word(R_ZL), s.pc() + 1));
+  ON(eicall, s.call(s.extended_z(reg::EIND), s.pc() + 1));
+  ON(reti, s.allow_interrupts(), s.go_back());
+  ON(ret, s.go_back());
+  ON(branch_by_carry, s.branch(s.alu.carry() == s.op->d));
+  ON(branch_by_zero, s.branch(s.alu.zero() == s.op->d));
+  ON(branch_by_negative, s.branch(s.alu.negative() == s.op->d));
+  ON(branch_by_overflow, s.branch(s.alu.overflow() == s.op->d));
+  ON(branch_by_sign, s.branch(s.alu.sign() == s.op->d));
+  ON(branch_by_half_carry, s.branch(s.alu.half_carry() == s.op->d));
+  ON(branch_by_transfer, s.branch(s.flags[S_T] == s.op->d));
+  ON(branch_by_interrupts, s.branch(s.flags[S_I] == s.op->d));
+  ON(cpse, s.skip(s.d() == s.r(), s.op->k));
+  ON(sbrc, s.skip(!(s.d() >> s.op->r & 1), s.op->k));
+  ON(sbrs, s.skip(s.d() >> s.op->r & 1, s.op->k));
+  ON(sbic, s.skip(!(s.read_io(s.op->k) & s.op->r), s.op->d));
+  ON(sbis, s.skip(s.read_io(s.op->k) & s.op->r, s.op->d));
+  ON(sleep, s.fall_asleep());
+  ON(wdr, s.request(AVR_IOCTL_WATCHDOG_RESET));
 #undef ON
 #undef DISPATCH
 
 due:
-  avr.cycle = cycle;
-  return (pc() & mask) * 2;
+  s.alu.store(s.flags);
+  avr_.cycle = s.cycle;
+  return (s.pc() & mask_) * 2;
 }
 
 }  // namespace board

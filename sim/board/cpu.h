@@ -23,6 +23,8 @@ class Cpu {
   void flash_changed(uint32_t address, uint32_t count);
 
  private:
+  struct State;
+
   // Everything but plain RAM: registers with their hooks, SREG, addresses that do not exist.
   uint8_t read_register(uint32_t address);
   void write_register(uint32_t address, uint8_t value);

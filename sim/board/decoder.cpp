@@ -75,9 +75,11 @@ Instruction Decoder::decode(uint32_t address) const {
   const unsigned bit = opcode & 7u;
   switch (opcode >> 9 & 7u) {
     case 0:
-    case 1: return make(Code::branch_if_set, 0, bit, 1, relative(7, 3));
+    case 1:
     case 2:
-    case 3: return make(Code::branch_if_clear, 0, bit, 1, relative(7, 3));
+    case 3:
+      return make(static_cast<Code>(static_cast<unsigned>(Code::branch_by_carry) + bit), !(opcode & 0x400u), 0, 1,
+                  relative(7, 3));
     case 4: return make(Code::bld, field_d5(opcode), bit);
     case 5: return make(Code::bst, field_d5(opcode), bit);
     case 6: return make(Code::sbrc, field_d5(opcode), bit, 1, skip_length(address + 1));

@@ -23,8 +23,11 @@ namespace board {
   /* program memory */ \
   X(lpm) X(lpm_increment) X(elpm) X(elpm_increment) X(spm) \
   /* flow; k is the target, or the number of words to skip */ \
-  X(jump) X(call) X(ijmp) X(eijmp) X(icall) X(eicall) X(ret) X(reti) X(branch_if_set) X(branch_if_clear) \
-  X(cpse) X(sbrc) X(sbrs) X(sbic) X(sbis) X(sleep) X(wdr)
+  X(jump) X(call) X(ijmp) X(eijmp) X(icall) X(eicall) X(ret) X(reti) \
+  X(cpse) X(sbrc) X(sbrs) X(sbic) X(sbis) X(sleep) X(wdr) \
+  /* branches in the order of the flags in SREG; d is the flag's value that branches */ \
+  X(branch_by_carry) X(branch_by_zero) X(branch_by_negative) X(branch_by_overflow) \
+  X(branch_by_sign) X(branch_by_half_carry) X(branch_by_transfer) X(branch_by_interrupts)
 // clang-format on
 
 enum class Code : uint8_t {
