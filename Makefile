@@ -5,6 +5,8 @@ PYTHON := .venv/bin/python
 export PATH := $(CURDIR)/.venv/bin:$(PATH)
 # Tests start hundreds of Python processes; without bytecode each would compile all that it imports.
 unexport PYTHONDONTWRITEBYTECODE
+# And each would start threads for linear algebra, which take longer than all that it works out.
+export OPENBLAS_NUM_THREADS := 1
 READY := setup
 
 CPPCHECK := cppcheck --quiet --error-exitcode=1 --inline-suppr --enable=warning,performance,portability -j2

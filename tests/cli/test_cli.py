@@ -69,6 +69,12 @@ def test_help_needs_no_heavy_imports() -> None:
     assert subprocess.run([sys.executable, "-c", code], check=False, stdout=subprocess.DEVNULL).returncode == 0
 
 
+def test_the_program_starts_no_threads_for_linear_algebra() -> None:
+    code = "import greywhale.__main__, numpy, threadpoolctl; print(threadpoolctl.threadpool_info()[0]['num_threads'])"
+    own = {name: value for name, value in os.environ.items() if name != "OPENBLAS_NUM_THREADS"}
+    assert subprocess.run([sys.executable, "-c", code], check=True, env=own, stdout=subprocess.PIPE).stdout == b"1\n"
+
+
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
