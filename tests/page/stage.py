@@ -52,13 +52,9 @@ from tests.dashboard.shared import jobs_of
 
 CHROMIUM = "/usr/bin/chromium"
 FLAGS = [
-    # One renderer for all pages: to start one takes longer than most tests.
-    *(
-        "--no-sandbox",
-        "--renderer-process-limit=1",
-        "--disable-background-timer-throttling",
-        "--disable-gpu-compositing",
-    ),
+    # One renderer for all pages, on whatever port: to start one takes longer than most tests.
+    *("--renderer-process-limit=1", "--disable-site-isolation-trials"),
+    *("--no-sandbox", "--disable-background-timer-throttling", "--disable-gpu-compositing"),
     *("--disable-accelerated-2d-canvas", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"),
 ]
 TOKEN = "a-token-of-a-test"
