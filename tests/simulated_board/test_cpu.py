@@ -104,6 +104,30 @@ def test_every_instruction_does_what_simavr_does(tmp_path: Path, chip: str, seed
     assert fast.flash() == reference.flash()
 
 
+# Each sets flags in a way of its own: ADC, SBC, CPC, EOR, COM, INC, ASR, ROR, ADIW, MUL, OUT SREG. PUSH keeps them.
+SETS_FLAGS = """
+000111xxxxxxxxxx 000010xxxxxxxxxx 000001xxxxxxxxxx 001001xxxxxxxxxx 1001010xxxxx0000 1001010xxxxx0011 1001010xxxxx0101
+1001010xxxxx0111 10010110xxxxxxxx 100111xxxxxxxxxx 10111111xxxx1111
+"""
+IN_R16_SREG, PUSH_R16 = 0xB70F, 0x930F
+
+
+@pytest.mark.parametrize("chip", ["atmega2560", "atmega328p"])
+def test_a_program_reads_the_flags_that_the_instruction_before_has_set(tmp_path: Path, chip: str) -> None:
+    dice, count = random.Random(chip), 300
+    words = [w for _ in range(count) for w in (fill(dice.choice(SETS_FLAGS.split()), dice), IN_R16_SREG, PUSH_R16)]
+    image = tmp_path / "flags.hex"
+    image.write_text(hex_text(b"".join(word.to_bytes(2, "little") for word in words)))
+    fast, reference = Board(chip), Board(chip)
+    reference.use_reference_decoder(True)
+    for board in (fast, reference):
+        load_hex(board, image)
+        board.power_on(1)
+        board.poke(0x5D, LAST_RAM[chip].to_bytes(2, "little"))
+        board.run_until(board.cycle + 4 * count)
+    assert observe(fast, chip) == observe(reference, chip)
+
+
 NOP, JMP_0, LDS_R0, SBRC_R0_0 = b"\0\0", b"\x0c\x94\0\0", b"\x00\x90", b"\x00\xfc"
 
 
