@@ -37,7 +37,7 @@ function(add_kernels SET)
   add_library(greywhale_${SET} OBJECT ${KERNELS_SOURCES})
   target_link_libraries(greywhale_${SET} PRIVATE greywhale_common)
   target_compile_definitions(greywhale_${SET} PRIVATE GREYWHALE_INSTRUCTIONS=${SET})
-  target_compile_options(greywhale_${SET} PRIVATE -O3 -fno-trapping-math -fno-exceptions ${KERNELS_OPTIONS})
+  target_compile_options(greywhale_${SET} PRIVATE -O3 -fno-trapping-math -fno-math-errno -fno-exceptions ${KERNELS_OPTIONS})
   target_sources(greywhale_core PRIVATE $<TARGET_OBJECTS:greywhale_${SET}>)
 endfunction()
 

@@ -39,6 +39,14 @@ GREYWHALE_INLINE void sine_cosine_near_zero(T r, T rest, T& sine, T& cosine) {
 
 }  // namespace detail
 
+// Of an integer below 2^52: its bits become the last ones of 2^52. Not every processor converts a vector of integers.
+GREYWHALE_INLINE double whole_number(std::uint64_t integer) {
+  const std::uint64_t bits = integer | 0x433ull << 52;
+  double raised;
+  std::memcpy(&raised, &bits, sizeof raised);
+  return raised - 0x1p52;
+}
+
 // Of an angle in rad: within 0.9 of the last bit up to 2^16 quarter turns; beyond, errors grow with the angle. NaN
 // where it is not finite.
 template <class T>
@@ -77,20 +85,20 @@ GREYWHALE_INLINE void sines_cosines(double one, double other, double& sine1, dou
   sine1 = sines[0], cosine1 = cosines[0], sine2 = sines[1], cosine2 = cosines[1];
 }
 
-inline double sine(double angle) {
+GREYWHALE_INLINE double sine(double angle) {
   double s, c;
   sine_cosine(angle, s, c);
   return s;
 }
 
-inline double cosine(double angle) {
+GREYWHALE_INLINE double cosine(double angle) {
   double s, c;
   sine_cosine(angle, s, c);
   return c;
 }
 
 // The natural logarithm of a normal number above 0, within the last bit.
-inline double logarithm(double x) {
+GREYWHALE_INLINE double logarithm(double x) {
   constexpr double kLn2High = 0x1.62e42fee00000p-1, kLn2Low = 0x1.a39ef35793c76p-33;  // 32 bits, and the rest
   constexpr std::uint64_t kMantissa = (1ull << 52) - 1, kOne = 0x3ffull << 52;
   std::uint64_t bits;
@@ -100,7 +108,7 @@ inline double logarithm(double x) {
   std::memcpy(&m, &unscaled, sizeof m);  // 1 to 2
   const bool large = m > 1.4142135623730951;
   m = large ? 0.5 * m : m;
-  const double exponent = static_cast<double>(static_cast<std::int64_t>(bits >> 52) - 0x3ff + large);
+  const double exponent = whole_number(bits >> 52) - 1023.0 + (large ? 1.0 : 0.0);
 
   // ln m = 2 artanh s = 2 s + s rest, and 2 s = f - s f, of which f has no error.
   const double f = m - 1.0, s = f / (m + 1.0), z = s * s, zz = z * z;

@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <stdexcept>
 
-#include "arm/random.h"
 #include "closed_loop/block.h"
 #include "closed_loop/firmware_tick.h"
 #include "instructions.h"
@@ -118,12 +117,7 @@ std::vector<float> noise_of(const Experiment& x) {
   if (quiet) return {};
   const std::size_t slices = kSlices * x.ticks + 1;
   std::vector<float> noise(slices * kJoints);
-  for (std::size_t i = 0; i < kJoints; ++i) {
-    const arm::Noise source(x.seed, i);
-    const double counts = x.pots[i].noise * 1000.0 * 1024.0 / kConverterMillivolts;
-    for (std::size_t slice = 0; slice < slices; ++slice)
-      noise[slice * kJoints + i] = static_cast<float>(counts * source.gaussian(slice));
-  }
+  chosen("").draw_noise(x, slices, noise.data());
   return noise;
 }
 

@@ -52,6 +52,7 @@ struct Kernel {
   void (*run_block)(const Experiment& experiment, const Shared& shared, const Block& block, int steps_per_tick,
                     Measures* measures);
   void (*check_law)(const LawCheck& check);
+  void (*draw_noise)(const Experiment& experiment, std::size_t slices, float* noise);  // slices x 4
 };
 namespace baseline {
 extern const Kernel kKernel;

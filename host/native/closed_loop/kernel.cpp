@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "arm/random.h"
 #include "block.h"
 #include "lanes.h"
 #include "lanes_gather.h"
@@ -290,8 +291,17 @@ void check_law(const LawCheck& c) {
   }
 }
 
+void draw_noise(const Experiment& x, std::size_t slices, float* noise) {
+  for (std::size_t i = 0; i < kJoints; ++i) {
+    const arm::Noise source(x.seed, i);
+    const double counts = x.pots[i].noise * 1000.0 * 1024.0 / kConverterMillivolts;
+    for (std::size_t slice = 0; slice < slices; ++slice)
+      noise[slice * kJoints + i] = static_cast<float>(counts * source.gaussian(slice));
+  }
+}
+
 }  // namespace
 
-const Kernel kKernel = {run_block, check_law};
+const Kernel kKernel = {run_block, check_law, draw_noise};
 
 }  // namespace greywhale::loop::GREYWHALE_INSTRUCTIONS
