@@ -64,7 +64,6 @@ PLANT = plant_row(default_arm())
          "3 controllers and 2 plants"),
         ({"steps_per_tick": 3}, "steps_per_tick is 3, but it must be 1, 2 or 4"),
         ({"every": -1}, "neither may be negative"),
-        ({"instructions": "mmx"}, 'the instruction set "mmx" is not known'),
     ],
 )  # fmt: skip
 def test_wrong_candidates_are_refused(experiment: Experiment, arguments: dict[str, Any], sentence: str) -> None:

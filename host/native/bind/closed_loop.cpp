@@ -72,6 +72,7 @@ struct ClosedLoop {
   In<double, nb::shape<-1, kJoints>> leader;
   In<double, nb::shape<-1>> weight;
   std::vector<float> noise;
+  std::string instructions;
 };
 
 template <class T, class U>
@@ -108,11 +109,12 @@ void make_loop(ClosedLoop* self, const loop::Settings& settings, const loop::Tim
                const std::array<arm::Potentiometer, kJoints>& pots, double pot_supply, std::uint64_t seed,
                const Each<double>& home, const Each<double>& gap,
                const In<std::int16_t, nb::shape<-1, kJoints>>& reference,
-               const In<double, nb::shape<-1, kJoints>>& leader, const In<double, nb::shape<-1>>& weight) {
+               const In<double, nb::shape<-1, kJoints>>& leader, const In<double, nb::shape<-1>>& weight,
+               const std::string& instructions) {
   if (reference.shape(0) != leader.shape(0) || weight.shape(0) != leader.shape(0)) {
     throw std::invalid_argument("reference, leader and weight differ in length.");
   }
-  new (self) ClosedLoop{{}, reference, leader, weight, {}};
+  new (self) ClosedLoop{{}, reference, leader, weight, {}, instructions};
   loop::Experiment& x = self->x;
   x.settings = settings;
   x.timing = timing;
@@ -125,12 +127,12 @@ void make_loop(ClosedLoop* self, const loop::Settings& settings, const loop::Tim
   x.reference = reference.data();
   x.leader = leader.data();
   x.weight = weight.data();
-  self->noise = loop::noise_of(x);
+  self->noise = loop::noise_of(x, instructions);
   x.noise = self->noise.empty() ? nullptr : self->noise.data();
 }
 
 nb::tuple run(const ClosedLoop& self, const ControllerTable& controllers, const PlantTable& plants, int substeps,
-              int threads, std::size_t every, bool exact, const std::string& instructions) {
+              int threads, std::size_t every, bool exact) {
   const std::size_t count = std::max(controllers.shape(0), plants.shape(0));
   if (count == 0 || (controllers.shape(0) != count && controllers.shape(0) != 1) ||
       (plants.shape(0) != count && plants.shape(0) != 1)) {
@@ -149,7 +151,7 @@ nb::tuple run(const ClosedLoop& self, const ControllerTable& controllers, const 
     const loop::Batch batch{laws.data(), laws.size(), plant_rows, plants.shape(0), count};
     const loop::Outputs outputs{mse.data(), itae.data(), itau.data(),   diverged.data(),
                                 every,      rows,        angles.data(), duties.data()};
-    loop::run_batch(self.x, batch, {substeps, threads, exact, instructions}, outputs);
+    loop::run_batch(self.x, batch, {substeps, threads, exact, self.instructions}, outputs);
   }
   return nb::make_tuple(mse.numpy(), itae.numpy(), itau.numpy(), diverged.numpy(), angles.numpy(), duties.numpy());
 }
@@ -275,9 +277,10 @@ void bind_closed_loop(nb::module_& m) {
           nb::kw_only(), "start"_a, "acts"_a, "on"_a, "late"_a = 0);
   nb::class_<ClosedLoop>(m, "ClosedLoop", "One experiment, for any number of candidates.")
       .def("__init__", &make_loop, nb::kw_only(), "settings"_a, "timing"_a, "pots"_a, "pot_supply"_a, "seed"_a,
-           "home"_a, "gap"_a, "reference"_a.noconvert(), "leader"_a.noconvert(), "weight"_a.noconvert())
+           "home"_a, "gap"_a, "reference"_a.noconvert(), "leader"_a.noconvert(), "weight"_a.noconvert(),
+           "instructions"_a)
       .def("run", &run, nb::kw_only(), "controllers"_a.noconvert(), "plants"_a.noconvert(), "substeps"_a, "threads"_a,
-           "every"_a, "exact"_a, "instructions"_a,
+           "every"_a, "exact"_a,
            "mse, itae, itau (n x 4), diverged (n), angles (float32) and duties (int16), both n x rows x 4. The GIL is "
            "released.");
   m.def("leader_readings", &leader_readings, nb::kw_only(), "settings"_a, "timing"_a, "pots"_a, "pot_supply"_a,

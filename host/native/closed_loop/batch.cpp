@@ -111,13 +111,14 @@ void run_lanes(const Experiment& x, const Batch& batch, const How& how, const Ou
 
 }  // namespace
 
-std::vector<float> noise_of(const Experiment& x) {
+std::vector<float> noise_of(const Experiment& x, const std::string& instructions) {
+  const Kernel& kernel = chosen(instructions);
   const bool quiet =
       std::all_of(x.pots.begin(), x.pots.end(), [](const arm::Potentiometer& pot) { return pot.noise == 0.0; });
   if (quiet) return {};
   const std::size_t slices = kSlices * x.ticks + 1;
   std::vector<float> noise(slices * kJoints);
-  chosen("").draw_noise(x, slices, noise.data());
+  kernel.draw_noise(x, slices, noise.data());
   return noise;
 }
 

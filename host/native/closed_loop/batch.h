@@ -36,11 +36,12 @@ struct Outputs {
   std::int16_t* duties;
 };
 
-// What Experiment::noise points to, from its pots, seed and ticks: the numbers that an exact run draws itself. It takes
-// as long as sixteen candidates, so it is done once for all batches. Empty for quiet pots.
-std::vector<float> noise_of(const Experiment& experiment);
+// What Experiment::noise points to, from its pots, seed and ticks: the numbers that an exact run draws itself, drawn
+// once for all batches. Empty for quiet pots. Throws std::invalid_argument for an unknown instruction set, as run_batch
+// does.
+std::vector<float> noise_of(const Experiment& experiment, const std::string& instructions);
 
-// Throws std::invalid_argument for an unknown instruction set. The result does not depend on the number of threads.
+// The result does not depend on the number of threads.
 void run_batch(const Experiment& experiment, const Batch& batch, const How& how, const Outputs& outputs);
 
 // The vector form of the law, for tests.

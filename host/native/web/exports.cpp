@@ -188,7 +188,7 @@ EXPORT(add) unsigned exported_add() {
   x.reference = kept->reference.data();
   x.leader = kept->leader.data();
   x.weight = kept->weight.data();
-  kept->noise = loop::noise_of(x);
+  kept->noise = loop::noise_of(x, "");
   x.noise = kept->noise.empty() ? nullptr : kept->noise.data();
   experiments.push_back(std::move(kept));
   return static_cast<unsigned>(experiments.size() - 1);

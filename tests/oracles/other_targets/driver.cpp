@@ -158,7 +158,7 @@ void run(Calls& calls, Results& results) {
   x.reference = reference.data();
   x.leader = leader.data();
   x.weight = weight.data();
-  const std::vector<float> noise = loop::noise_of(x);
+  const std::vector<float> noise = loop::noise_of(x, "");
   x.noise = noise.empty() ? nullptr : noise.data();
 
   const std::vector<std::int32_t> table = calls.array<std::int32_t>();

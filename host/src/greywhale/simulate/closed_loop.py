@@ -116,7 +116,8 @@ class ClosedLoop:
     """Leader, follower's potentiometers and board settings, shared by all candidates.
 
     The follower starts at `home` (4,) rad. `gap` (4,) is the place of each gear in its backlash (-1 to 1). `weight_s`
-    (ticks,) weighs |e| and |u| in ITAE and ITAU.
+    (ticks,) weighs |e| and |u| in ITAE and ITAU. `instructions` is one of _native.instruction_sets(), by default the
+    best; the results are the same bits with all.
     """
 
     def __init__(
@@ -132,6 +133,7 @@ class ClosedLoop:
         noise: bool = True,
         timing: Timing = DEFAULT_TIMING,
         soft_start: bool = False,
+        instructions: str = "",
     ) -> None:
         self.ticks = len(readings.reference)
         self.time_s: Floats = np.arange(self.ticks, dtype=np.float64) * TICK_S
@@ -146,6 +148,7 @@ class ClosedLoop:
             reference=readings.reference,
             leader=readings.leader,
             weight=weight_s,
+            instructions=instructions,
         )
 
     def run(
@@ -157,7 +160,6 @@ class ClosedLoop:
         every: int = 0,
         threads: int = 0,
         exact: bool = False,
-        instructions: str = "",
     ) -> Result:
         """Simulate candidates that are already checked; Experiment explains the arguments, and checks them."""
         try:
@@ -168,7 +170,6 @@ class ClosedLoop:
                 threads=threads,
                 every=every,
                 exact=exact,
-                instructions=instructions,
             )
         except ValueError as error:
             raise UserError(str(error)) from None

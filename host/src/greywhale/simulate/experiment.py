@@ -46,6 +46,7 @@ class Experiment:
         weight_s: Floats | None = None,
         timing: Timing = DEFAULT_TIMING,
         gap_position: Sequence[float] | None = None,
+        instructions: str = "",
     ) -> None:
         self.arm = arm
         self.table = ParameterTable.defaults() if table is None else table
@@ -71,6 +72,7 @@ class Experiment:
             noise=noise,
             timing=timing,
             soft_start=soft_start,
+            instructions=instructions,
         )
         self.time_s = self._loop.time_s
         self.ticks = self._loop.ticks
@@ -83,7 +85,6 @@ class Experiment:
         every: int = 0,
         threads: int = 0,
         steps_per_tick: int = 2,
-        instructions: str = "",
     ) -> Result:
         """Simulate a batch: controllers int32 (n, 4, 13), plants float64 (n, columns), or one row of either for all.
 
@@ -93,7 +94,7 @@ class Experiment:
         """
         if steps_per_tick not in STEPS_PER_TICK:
             raise UserError(f"steps_per_tick is {steps_per_tick}, but it must be 1, 2 or 4.")
-        return self._run(controllers, plants, every, threads, steps_per_tick, False, instructions)
+        return self._run(controllers, plants, every, threads, steps_per_tick, False)
 
     def run_exact(
         self,
@@ -107,7 +108,7 @@ class Experiment:
         """Simulate one by one in double precision, as the bench does, bit for bit; finer steps give a reference."""
         if steps_per_slice < 1:
             raise UserError(f"steps_per_slice is {steps_per_slice}, but it must be 1 or more.")
-        return self._run(controllers, plants, every, threads, steps_per_slice, True, "")
+        return self._run(controllers, plants, every, threads, steps_per_slice, True)
 
     def _run(
         self,
@@ -117,7 +118,6 @@ class Experiment:
         threads: int,
         substeps: int,
         exact: bool,
-        instructions: str,
     ) -> Result:
         laws = check_controllers(controllers_of(self.table) if controllers is None else controllers)
         rows = check_plants(plant_row(self.arm) if plants is None else plants)
@@ -135,7 +135,6 @@ class Experiment:
             every=every,
             threads=threads,
             exact=exact,
-            instructions=instructions,
         )
 
     def _require_home(self, plants: Floats) -> None:
