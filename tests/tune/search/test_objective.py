@@ -11,6 +11,7 @@ from greywhale.arm.plants import column
 from greywhale.base.errors import UserError
 from greywhale.files.arm import default_arm
 from greywhale.files.trajectory import Trajectory
+from greywhale.motion import human_reaches
 from greywhale.motion.swings import RATTLE_MOVING_RAD
 from greywhale.protocol.table import ParameterTable
 from greywhale.simulate import default_controller, plant_row
@@ -33,6 +34,7 @@ from greywhale.tune.search.objective import (
 from greywhale.tune.search.training import (
     LEVELS,
     SOON_S,
+    fit_motion,
     moves,
     reach,
     slow_following,
@@ -171,6 +173,17 @@ def test_motions_keep_within_limits_and_stops() -> None:
         assert (np.ptp(leader, axis=0) > 0.2).all()
     assert leader[:, 1].max() <= 0.5
     assert leader[:, 3].min() >= -0.4
+
+
+def test_reaches_are_moved_into_the_range_and_only_made_smaller_where_it_is_narrower() -> None:
+    reaches = human_reaches(3, 4.0)
+    least, most = reaches.angles.min(axis=0), reaches.angles.max(axis=0)
+    np.testing.assert_array_equal(fit_motion(reaches, least - 0.1, most + 0.1).angles, reaches.angles)
+    np.testing.assert_allclose(fit_motion(reaches, least + 0.2, most + 0.3).angles, reaches.angles + 0.2)
+    np.testing.assert_allclose(fit_motion(reaches, least - 0.3, most - 0.2).angles, reaches.angles - 0.2)
+    narrow = fit_motion(reaches, 0.5 * least, 0.5 * most).angles
+    np.testing.assert_allclose(narrow, 0.5 * reaches.angles, atol=1e-9)
+    assert (fit_motion(reaches, np.zeros(4), np.zeros(4)).angles == 0.0).all(), "a joint that is not in use rests"
 
 
 def test_a_joint_without_room_is_refused() -> None:

@@ -24,7 +24,7 @@ from greywhale.protocol.schema import Board
 from greywhale.protocol.table import ParameterTable, find_board, refuse_unknown
 from greywhale.simulate import Experiment, plant_row
 from greywhale.simulate.controllers import controllers_of
-from greywhale.tune.search.training import clip_motion, moves, reach
+from greywhale.tune.search.training import fit_motion, moves, reach
 
 # Half of the arms that the logs allow may follow a motion differently from the estimate by this share of its tracking
 # error. Slow reaches show friction and gravity, quick moves show inertia and damping.
@@ -223,7 +223,7 @@ def doubt_precision(arm: ArmParameters, table: ParameterTable) -> Iterator[Doubt
 def _motions(arm: ArmParameters, table: ParameterTable) -> dict[str, Experiment]:
     low, high = reach(arm, table, plant_row(arm)[None])
     slow, quick = SPREAD
-    motions = {slow: clip_motion(human_reaches(REACHES_SEED, REACHES_S), low, high), quick: moves(low, high)}
+    motions = {slow: fit_motion(human_reaches(REACHES_SEED, REACHES_S), low, high), quick: moves(low, high)}
     return {
         name: Experiment(motion, arm, table=table, noise=False, soft_start=False, wait_s=WAIT_TICKS * TICK_S)
         for name, motion in motions.items()

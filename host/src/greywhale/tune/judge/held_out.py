@@ -21,7 +21,7 @@ from greywhale.protocol.joints import Joints
 from greywhale.protocol.table import ParameterTable
 from greywhale.simulate import Experiment
 from greywhale.tune.judge.floor import Floor, saturation_floor
-from greywhale.tune.search.training import clip_motion, reach
+from greywhale.tune.search.training import clip_motion, fit_motion, reach
 
 WAIT_S = 1.5
 SEED = 2001  # of reaches that are played nowhere else
@@ -83,7 +83,7 @@ def motions(low: Floats, high: Floats) -> dict[str, Trajectory]:
     return {
         "steps": clip_motion(steps(), low, high),
         "multi-steps": clip_motion(multi_steps(), low, high),
-        "human-like reaches": clip_motion(human_reaches(SEED, 20.0), low, high),
+        "human-like reaches": fit_motion(human_reaches(SEED, 20.0), low, high),
     }
 
 

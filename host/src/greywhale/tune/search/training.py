@@ -66,7 +66,7 @@ def training_motions(
     """The training motions within the range of this arm and table, with sensor noise."""
     low, high = reach(arm, table, plants)
     large = moves(low, high)
-    human = clip_motion(human_reaches(HUMAN_SEED, HUMAN_S), low, high)
+    human = fit_motion(human_reaches(HUMAN_SEED, HUMAN_S), low, high)
     slow = slow_following(low, high)
     classes = {
         "moves to both sides": (large, time_since_move(large, WAIT_S), 2.0),
@@ -173,6 +173,13 @@ def centre(low: Floats, high: Floats) -> tuple[Floats, Floats]:
     """Where a joint rests and how far it goes to either side: 0 and 1 rad where the range has room for that."""
     size = np.minimum(REACH_RAD, 0.5 * (high - low))
     return np.clip(0.0, low + size, high - size), size
+
+
+def fit_motion(motion: Trajectory, low: Floats, high: Floats) -> Trajectory:
+    """The motion within the range: moved to it, and made smaller where the range is narrower than the motion."""
+    least, most = motion.angles.min(axis=0), motion.angles.max(axis=0)
+    share = np.minimum(1.0, (high - low) / np.maximum(most - least, 1e-9))
+    return Trajectory(motion.time_s, share * motion.angles + np.clip(0.0, low - share * least, high - share * most))
 
 
 def clip_motion(motion: Trajectory, low: Floats, high: Floats) -> Trajectory:
