@@ -64,10 +64,10 @@ class Stage:
 
 
 STAGES = (
-    Stage("shape", 0.5, None, lockstep.TURNS),
-    Stage("shape again", 0.19, 0.15, lockstep.TURNS),
-    Stage("shape at last", 0.1, 0.05, lockstep.TOGETHER),
-    Stage("every corner", 0.21, 0.03, lockstep.TOGETHER, every_corner=True),
+    Stage("shape", 0.25, None, lockstep.TURNS),
+    Stage("shape again", 0.25, 0.15, lockstep.TURNS),
+    Stage("shape at last", 0.2, 0.05, lockstep.TOGETHER),
+    Stage("every corner", 0.3, 0.03, lockstep.TOGETHER, every_corner=True),
 )
 # What joints get that fall short in the last judgement, beyond the budget, and what a failure costs there.
 AGAIN = Stage("again", 0.06, 0.05, lockstep.TOGETHER)
