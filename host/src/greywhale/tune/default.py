@@ -85,7 +85,13 @@ FAIR_TO_KEPT = 1.05
 ON_TRIAL = 0.1
 # Shares of the best's Ku and Ki that compete in the last judgement: full voltage may shake gears, and an integral swing
 # in friction, that were quiet in the search.
-CALMER = ((1.0, 0.5), (1.0, 0.2), (1.0, 0.0), (0.7, 0.7), (0.7, 0.3), (0.7, 0.0), (0.5, 0.3), (0.5, 0.0), (0.35, 0.0))
+CALMER = (
+    *((1.0, ki) for ki in (0.5, 0.2, 0.0)),
+    *((0.85, ki) for ki in (0.85, 0.5)),
+    *((0.7, ki) for ki in (0.7, 0.3, 0.0)),
+    *((0.5, ki) for ki in (0.3, 0.0)),
+    (0.35, 0.0),
+)
 KU, KI = (CONTROLLER_COLUMNS.index(name) for name in ("ku_mv", "ki"))
 
 
