@@ -15,7 +15,8 @@ TIDY := $(PORTABLE:%=build/tidy/%.ok)
 FIRMWARE_SOURCES := $(shell find firmware/lib -name '*.h' -o -name '*.inc')
 FIRMWARE_ROOMS := $(patsubst %,-Ifirmware/lib/%/src,$(notdir $(wildcard firmware/lib/*)))
 
-# mypy keeps what it reads to the end: to look for garbage takes a fifth of its time, and it would begin that anew.
+# mypy keeps what it reads to the end: to look for garbage takes a fifth of its time and finds none. mypy would turn that
+# on again by itself, so enable() is replaced, too.
 MYPY := $(PYTHON) -c 'import gc; gc.disable(); gc.enable = gc.disable; from mypy.__main__ import console_entry as run; run()'
 NEAR_THE_SYSTEM := $(addprefix host/src/greywhale/,__main__.py base protocol files board dashboard cli)
 
