@@ -10,8 +10,7 @@ import pytest
 from greywhale.optimise import Optimiser, create
 from greywhale.simulate import default_controller
 from greywhale.tune.search import lockstep as search
-from greywhale.tune.search.journal import TuningJournal
-from greywhale.tune.search.lockstep import KEPT, TOGETHER, TURNS, SearchState, search_in_lockstep, try_again
+from greywhale.tune.search.lockstep import KEPT, TOGETHER, TURNS, LockstepSearch, SearchState
 from greywhale.tune.search.space import CE_TICKS, Space
 
 BEFORE = default_controller()
@@ -32,18 +31,15 @@ class Hills:
         return np.asarray(((share - AIMS[:, None]) ** 2).sum(axis=2))
 
 
-def lockstep(evaluate: Any, found: SearchState, book: TuningJournal, method: str, budget: int, **options: Any) -> None:
-    search_in_lockstep(
-        SPACE, evaluate, found, book, stage="test", method=method, budget=budget, seed=(1,), start=BEFORE,
-        tick=lambda _: None, **options,
-    )  # fmt: skip
+def lockstep(search: LockstepSearch, method: str, budget: int, **options: Any) -> None:
+    search.run(SPACE, stage="test", method=method, budget=budget, seed=(1,), start=BEFORE, **options)
 
 
 def run(method: str = "gwo-woa-relative", budget: int = 400, groups: object = TOGETHER) -> tuple[SearchState, Hills]:
     found, hills = SearchState.nothing(BEFORE), Hills()
-    with TuningJournal(None, {}) as book:
-        try_again(hills, found, book, "start")
-        lockstep(hills, found, book, method, budget, groups=groups)
+    search = LockstepSearch(hills, found)
+    search.try_again("start")
+    lockstep(search, method, budget, groups=groups)
     return found, hills
 
 
@@ -77,8 +73,7 @@ def test_joints_of_no_group_keep_what_they_have() -> None:
 @pytest.mark.parametrize("method", ["gwo-woa-relative", "cma-es"])
 def test_a_narrow_stage_begins_around_its_start(method: str) -> None:
     hills = Hills()
-    with TuningJournal(None, {}) as book:
-        lockstep(hills, SearchState.nothing(BEFORE), book, method, 8, sigma=0.02)
+    lockstep(LockstepSearch(hills, SearchState.nothing(BEFORE)), method, 8, sigma=0.02)
     tried = SPACE.points(np.concatenate(hills.rows))
     away = np.abs(tried - SPACE.points(BEFORE[None])) / (SPACE.upper - SPACE.lower)
     assert (away < 0.1).all()
@@ -89,8 +84,7 @@ def test_a_narrow_stage_begins_around_its_start(method: str) -> None:
 def test_trying_again_forgets_what_neighbours_that_are_gone_made_of_a_cost() -> None:
     found, hills = run(budget=57)
     best = found.best.copy()
-    with TuningJournal(None, {}) as book:
-        try_again(lambda rows: hills(rows) + 1.0, found, book, "again")
+    LockstepSearch(lambda rows: hills(rows) + 1.0, found).try_again("again")
     np.testing.assert_array_equal(found.best, best)
     np.testing.assert_allclose(found.cost, hills(best[None])[0] + 1.0)
     assert found.evaluations == 59
@@ -118,6 +112,6 @@ def test_optimisers_are_given_back_when_a_search_is_cut_off(monkeypatch: pytest.
         raise KeyboardInterrupt
 
     monkeypatch.setattr(search, "create", watched)
-    with pytest.raises(KeyboardInterrupt), TuningJournal(None, {}) as book:
-        lockstep(interrupted, SearchState.nothing(BEFORE), book, "gwo-woa", 10)
+    with pytest.raises(KeyboardInterrupt):
+        lockstep(LockstepSearch(interrupted, SearchState.nothing(BEFORE)), "gwo-woa", 10)
     assert len(closed) == 4

@@ -36,9 +36,7 @@ from greywhale.simulate.controllers import controllers_of
 from greywhale.tune.default import METHOD
 from greywhale.tune.judge.margins import TEETH, TWICE, Margins, penalty, with_gain
 from greywhale.tune.model import Model
-from greywhale.tune.search import lockstep
-from greywhale.tune.search.journal import TuningJournal
-from greywhale.tune.search.lockstep import SearchState
+from greywhale.tune.search.lockstep import TURNS, LockstepSearch, SearchState
 from greywhale.tune.search.space import Space
 
 # The searches, each around the best so far: the width of the first pack, as a share of the box, and the sets to try.
@@ -173,28 +171,25 @@ class CheckOnModel:
     def _search_around(
         self, begin: Controllers, vary: Flags, seed: int, report: NotedProgress, what: str = "searching on the model"
     ) -> Controllers:
-        table, journal = self.trials.table, TuningJournal(None, {})
-        found, best = SearchState.nothing(begin), begin.copy()
+        table, best = self.trials.table, begin.copy()
         whole = sum(sets for _, sets in PACKS)
 
         def costs(controllers: Controllers) -> Floats:
             return self.costs(np.where(vary[:, None], controllers, begin))
 
+        found = SearchState.nothing(begin)
+        search = LockstepSearch(costs, found, tick=lambda now: report(what, min(1.0, now.evaluations / whole)))
         for number, (sigma, sets) in enumerate(PACKS):
             if number:
-                lockstep.try_again(costs, found, journal, "check")
-            lockstep.search_in_lockstep(
+                search.try_again("check")
+            search.run(
                 Space.default("sf", found.best, table["supply_mv"], table.period_ms),
-                costs,
-                found,
-                journal,
                 stage="check",
                 method=METHOD,
-                budget=sets // len(lockstep.TURNS),
+                budget=sets // len(TURNS),
                 seed=(seed, number),
                 start=found.best,
-                tick=lambda state: report(what, min(1.0, state.evaluations / whole)),
-                groups=lockstep.TURNS,
+                groups=TURNS,
                 sigma=sigma,
             )
             best = self._best_together(best, np.where(vary[:, None], found.best, begin))

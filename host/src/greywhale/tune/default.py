@@ -41,9 +41,8 @@ from greywhale.tune.method import Costs, Judgement
 from greywhale.tune.model import Model
 from greywhale.tune.possible import scale_of
 from greywhale.tune.request import TuningRequest
-from greywhale.tune.search import lockstep
 from greywhale.tune.search.journal import TuningJournal
-from greywhale.tune.search.lockstep import SearchState
+from greywhale.tune.search.lockstep import KEPT, TOGETHER, TURNS, LockstepSearch, SearchState
 from greywhale.tune.search.objective import Objective
 from greywhale.tune.search.space import Space
 from greywhale.tune.search.training import TrainingMotion, own_motion, training_motions
@@ -64,13 +63,13 @@ class Stage:
 
 
 STAGES = (
-    Stage("shape", 0.25, None, lockstep.TURNS),
-    Stage("shape again", 0.25, 0.15, lockstep.TURNS),
-    Stage("shape at last", 0.2, 0.05, lockstep.TOGETHER),
-    Stage("every corner", 0.3, 0.03, lockstep.TOGETHER, every_corner=True),
+    Stage("shape", 0.25, None, TURNS),
+    Stage("shape again", 0.25, 0.15, TURNS),
+    Stage("shape at last", 0.2, 0.05, TOGETHER),
+    Stage("every corner", 0.3, 0.03, TOGETHER, every_corner=True),
 )
 # What joints get that fall short in the last judgement, beyond the budget, and what a failure costs there.
-AGAIN = Stage("again", 0.06, 0.05, lockstep.TOGETHER)
+AGAIN = Stage("again", 0.06, 0.05, TOGETHER)
 STRICT_PRICE = 0.6
 # The search tracks on so many plants, the estimate first; of the last judgement, the errors use all.
 SEARCH_PLANTS = 2
@@ -149,42 +148,31 @@ class DefaultMethod:
             what = "replaying the journal" if journal.replaying else "tuning"
             task.report(what, min(1.0, found.evaluations / task.budget), note=f"cost {found.total:.3f}")
 
-        lockstep.try_again(self.costs, self.found, journal, "start")
+        search = LockstepSearch(self.costs, self.found, journal, tick)
+        search.try_again("start")
         for number, stage in enumerate(STAGES, 1):
             if number > 1:
                 self.margins = self._margins(searching=True, rest_s=REST_LONG_S)  # an integral swings slowly
             left = task.budget - self.found.evaluations
             share = left if stage is STAGES[-1] else min(left, round(stage.share * task.budget))
             if number > 1 and share > len(stage.groups):
-                lockstep.try_again(self.costs, self.found, journal, stage.name)
+                search.try_again(stage.name)
                 share -= 1
-            self._run(stage, number, share // len(stage.groups), self.costs, self.found, journal, tick)
+            self._run(search, stage, number, share // len(stage.groups))
 
-    def _run(
-        self,
-        stage: Stage,
-        number: int,
-        budget: int,
-        costs: lockstep.Costs,
-        found: SearchState,
-        journal: TuningJournal,
-        tick: lockstep.Tick,
-    ) -> None:
+    def _run(self, search: LockstepSearch, stage: Stage, number: int, budget: int) -> None:
         """Spend a stage's evaluations of each joint."""
         if budget < 1:
             return
         space = self.space if stage.every_corner else self.space.reduce()
-        lockstep.search_in_lockstep(
+        best = search.found.best
+        search.run(
             space,
-            costs,
-            found,
-            journal,
             stage=stage.name,
             method=METHOD if self.task.method == "default" else self.task.method,
             budget=budget,
             seed=(self.task.seed, number),
-            start=found.best if stage.every_corner else space.restretch(found.best),
-            tick=tick,
+            start=best if stage.every_corner else space.restretch(best),
             groups=stage.groups,
             sigma=stage.sigma,
             pack=FULL_PACK if self.task.budget >= SHORT_BUDGET else PACK,
@@ -205,7 +193,7 @@ class DefaultMethod:
 
     def _contenders(self) -> Controllers:
         """The best few of every joint (k, 4, 13), and the best with less voltage or integral: steadier and quieter."""
-        kept = self.found.contenders(lockstep.KEPT)
+        kept = self.found.contenders(KEPT)
         calmer = np.repeat(kept[:1], len(CALMER), axis=0)
         for row, (ku, ki) in zip(calmer, CALMER, strict=True):
             row[:, KU] = np.round(ku * row[:, KU])
@@ -261,12 +249,11 @@ class DefaultMethod:
             restless = penalty(self.margins.unrest(controllers), self.standard.quiet_v, STRICT_PRICE)
             return self.objective.costs(controllers) + restless
 
-        found, journal = SearchState.nothing(rows), TuningJournal(None, {})
-        lockstep.try_again(costs, found, journal, AGAIN.name)
+        search = LockstepSearch(costs, SearchState.nothing(rows))
+        search.try_again(AGAIN.name)
         stage = replace(AGAIN, groups=(np.flatnonzero(short).tolist(),))
-        budget = round(stage.share * self.task.budget)
-        self._run(stage, len(STAGES) + 1, budget, costs, found, journal, lambda _: None)
-        return found.contenders(lockstep.KEPT)
+        self._run(search, stage, len(STAGES) + 1, round(stage.share * self.task.budget))
+        return search.found.contenders(KEPT)
 
     def _disturbing(self, after: Controllers, worse: Flags, judge: Judge) -> Flags:
         """Which joint's controller from before would serve those best that are worse, though they keep theirs (4,)."""

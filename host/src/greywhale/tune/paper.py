@@ -36,7 +36,7 @@ from greywhale.tune.method import Costs, Judgement
 from greywhale.tune.model import Model
 from greywhale.tune.request import TuningRequest
 from greywhale.tune.search.journal import TuningJournal
-from greywhale.tune.search.lockstep import SearchState, search_in_lockstep
+from greywhale.tune.search.lockstep import LockstepSearch, SearchState
 from greywhale.tune.search.space import Space
 from greywhale.tune.search.training import tick_times
 
@@ -103,10 +103,9 @@ class PaperMethod:
         def tick(now: SearchState) -> None:
             task.report("tuning", min(1.0, now.evaluations / task.budget), note=f"J {now.total:.2f}")
 
-        search_in_lockstep(
-            Space.paper(task.strategy, task.before), self.loops.costs, self.found, journal, stage="paper",
-            method=METHOD, budget=task.budget, seed=(task.seed,), tick=tick, pack=AGENTS,
-        )  # fmt: skip
+        space = Space.paper(task.strategy, task.before)
+        search = LockstepSearch(self.loops.costs, self.found, journal, tick)
+        search.run(space, stage="paper", method=METHOD, budget=task.budget, seed=(task.seed,), pack=AGENTS)
 
     def cost_before(self) -> Costs:
         return tuple(map(float, self.loops.costs(self.task.before[None])[0]))

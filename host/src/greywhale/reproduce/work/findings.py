@@ -25,8 +25,7 @@ from greywhale.reproduce.work.readings import LENGTHS_S
 from greywhale.simulate import CONTROLLER_COLUMNS, Experiment
 from greywhale.tune.model import load_model
 from greywhale.tune.paper import AGENTS, BUDGET, METHOD, Loops
-from greywhale.tune.search.journal import TuningJournal
-from greywhale.tune.search.lockstep import SearchState, search_in_lockstep
+from greywhale.tune.search.lockstep import LockstepSearch, SearchState
 from greywhale.tune.search.space import Space
 
 PERIODS_MS = (1, 2, 5, 10, 20, 50)
@@ -106,13 +105,9 @@ def objective(seed: int) -> dict[str, Any]:
             "two-sided": float((itae + itau).sum()),
         }
         found["share_of_effort"][name] = float(itau.sum() / (itae + itau).sum())
-    space = Space.paper("sf", before)
     best = SearchState.nothing(before)
-    with TuningJournal(None, {}) as book:
-        search_in_lockstep(
-            space, lambda rows: np.add(*parts(rows)), best, book, stage="two-sided", method=METHOD, budget=BUDGET,
-            seed=(seed,), tick=lambda now: None, pack=AGENTS,
-        )  # fmt: skip
+    search = LockstepSearch(lambda rows: np.add(*parts(rows)), best)
+    search.run(Space.paper("sf", before), stage="two-sided", method=METHOD, budget=BUDGET, seed=(seed,), pack=AGENTS)
     found["ku"] = (best.best[:, CONTROLLER_COLUMNS.index("ku_mv")] / 1000.0).tolist()
     found["ki"] = (best.best[:, CONTROLLER_COLUMNS.index("ki")] / GAIN_UNIT).tolist()
     return found

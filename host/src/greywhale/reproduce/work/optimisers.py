@@ -19,8 +19,7 @@ from greywhale.reproduce.work.bench import record_data
 from greywhale.reproduce.work.motions import printed
 from greywhale.tune.model import load_model
 from greywhale.tune.paper import BUDGET, Loops
-from greywhale.tune.search.journal import TuningJournal
-from greywhale.tune.search.lockstep import SearchState, search_in_lockstep
+from greywhale.tune.search.lockstep import LockstepSearch, SearchState
 from greywhale.tune.search.space import Space
 
 # The paper's hybrid first, then what it is made of, then established others, then chance.
@@ -43,13 +42,9 @@ def tune_with(seed: int, method: str) -> dict[str, Any]:
     """The paper's J of the sets, summed over the joints of its grey-box arm, that a method finds."""
     model, before = load_model("grey_box", force=True), printed("before_tuning")
     loops = Loops(model, "mf", before, 1)
-    space = Space.paper("mf", before)
     found = SearchState.nothing(before)
-    with TuningJournal(None, {}) as book:
-        search_in_lockstep(
-            space, loops.costs, found, book, stage="paper", method=method, budget=BUDGET, seed=(seed,),
-            tick=lambda now: None,
-        )  # fmt: skip
+    search = LockstepSearch(loops.costs, found)
+    search.run(Space.paper("mf", before), stage="paper", method=method, budget=BUDGET, seed=(seed,))
     return {"cost": float(found.cost.sum()), "before": float(loops.costs(before[None]).sum())}
 
 

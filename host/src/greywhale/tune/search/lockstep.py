@@ -88,41 +88,83 @@ def _best_few(ranked: list[tuple[float, bytes]]) -> list[tuple[float, bytes]]:
     return [(cost, raw) for raw, cost in list(kept.items())[: RANKS[-1] + 1]]
 
 
-def search_in_lockstep(
-    space: Space,
-    evaluate: Costs,
-    found: SearchState,
-    journal: TuningJournal,
-    *,
-    stage: str,
-    method: str,
-    budget: int,
-    seed: tuple[int, ...],
-    start: Controllers | None = None,
-    tick: Tick,
-    groups: Sequence[Sequence[int]] = TOGETHER,
-    sigma: float | None = None,
-    pack: int = PACK,
-) -> None:
-    """Spend `budget` evaluations a joint and leave the best in `found`; a `start` (4, 13) is in the first pack.
+@dataclass
+class LockstepSearch:
+    """One optimiser a joint on these costs, (n, 4) for controllers (n, 4, 13). The best goes into `found`."""
 
-    The first pack lies all over the box, or around `start` with a standard deviation of `sigma` times the box. CMA-ES
-    has a pack of its own size. Joints of no group keep what they have in `found`.
-    """
-    points = np.empty((0, JOINTS, space.dimensions)) if start is None else space.points(start[None])
-    packs: list[Optimiser] = []
-    try:
-        for joint in range(JOINTS):
-            source = np.random.default_rng([*seed, joint])
-            packs.append(_begin(method, space, budget, source, points[:, joint], sigma, pack))
-        while not all(packs[joint].done for group in groups for joint in group):
-            for group in groups:
-                if not all(packs[joint].done for joint in group):
-                    _run_batch(space, evaluate, found, journal, stage, packs, group)
-                    tick(found)
-    finally:
-        for one in packs:
-            one.close()
+    costs: Costs
+    found: SearchState
+    journal: TuningJournal = field(default_factory=lambda: TuningJournal(None, {}))
+    tick: Tick = lambda _: None  # called after each batch
+
+    def try_again(self, stage: str) -> None:
+        """Judge the best of all joints together, and forget all other costs, so that later candidates must beat that.
+
+        A joint's cost depends on what its neighbours did in the same row. The best of many was also lucky in that, and
+        neighbours have changed since.
+        """
+        self.found.forget_costs()
+        self._evaluate(self.found.best[None].copy(), [1] * JOINTS, stage)
+
+    def run(
+        self,
+        space: Space,
+        *,
+        stage: str,
+        method: str,
+        budget: int,
+        seed: tuple[int, ...],
+        start: Controllers | None = None,
+        groups: Sequence[Sequence[int]] = TOGETHER,
+        sigma: float | None = None,
+        pack: int = PACK,
+    ) -> None:
+        """Spend `budget` evaluations a joint; a `start` (4, 13) is in the first pack.
+
+        The first pack lies all over the box, or around `start` with a standard deviation of `sigma` times the box.
+        CMA-ES has a pack of its own size. Joints of no group keep what they have.
+        """
+        points = np.empty((0, JOINTS, space.dimensions)) if start is None else space.points(start[None])
+        packs: list[Optimiser] = []
+        try:
+            for joint in range(JOINTS):
+                source = np.random.default_rng([*seed, joint])
+                packs.append(_begin(method, space, budget, source, points[:, joint], sigma, pack))
+            while not all(packs[joint].done for group in groups for joint in group):
+                for group in groups:
+                    if not all(packs[joint].done for joint in group):
+                        self._run_batch(space, stage, packs, group)
+                        self.tick(self.found)
+        finally:
+            for one in packs:
+                one.close()
+
+    def _run_batch(self, space: Space, stage: str, packs: list[Optimiser], group: Sequence[int]) -> None:
+        """One round of ask and tell for some joints; the others run their best so far."""
+        asked = [
+            packs[joint].ask() if joint in group and not packs[joint].done else np.empty((0, space.dimensions))
+            for joint in range(JOINTS)
+        ]
+        counts = [len(one) for one in asked]
+        rows = np.repeat(self.found.best[None], max(counts), axis=0)
+        for joint, points in enumerate(asked):
+            if len(points):
+                whole = np.repeat(points[:, None], JOINTS, axis=1)
+                rows[: len(points), joint] = space.controllers(whole)[:, joint]
+                self.found.narrowed += space.count_narrow(points[:, None])
+        costs = self._evaluate(rows, counts, stage)
+        for joint, one in enumerate(packs):
+            if counts[joint]:
+                one.tell(costs[: counts[joint], joint])
+
+    def _evaluate(self, rows: Controllers, counts: list[int], stage: str) -> Floats:
+        """Take the costs of candidates from the journal, or simulate them."""
+        costs = self.journal.costs(stage, rows)
+        if costs is None:
+            costs = self.costs(rows)
+            self.journal.tell(stage, rows, costs)
+        self.found.take(rows, costs, counts)
+        return costs
 
 
 def _begin(
@@ -151,52 +193,3 @@ def _surround(space: Space, start: Floats, sigma: float, source: np.random.Gener
     steps = sigma * np.sqrt(3.0) * (2.0 * places - 1.0)
     around = np.clip(start[:1] + steps * (space.upper - space.lower), space.lower, space.upper)
     return np.concatenate([start, around])
-
-
-def try_again(evaluate: Costs, found: SearchState, journal: TuningJournal, stage: str) -> None:
-    """Judge the best of all joints together, and forget all other costs, so that later candidates must beat that.
-
-    A joint's cost depends on what its neighbours did in the same row. The best of many was also lucky in that, and
-    neighbours have changed since.
-    """
-    found.forget_costs()
-    _evaluate(found.best[None].copy(), [1] * JOINTS, evaluate, found, journal, stage)
-
-
-def _evaluate(
-    rows: Controllers, counts: list[int], evaluate: Costs, found: SearchState, journal: TuningJournal, stage: str
-) -> Floats:
-    """Take the costs of candidates from the journal, or simulate them."""
-    costs = journal.costs(stage, rows)
-    if costs is None:
-        costs = evaluate(rows)
-        journal.tell(stage, rows, costs)
-    found.take(rows, costs, counts)
-    return costs
-
-
-def _run_batch(
-    space: Space,
-    evaluate: Costs,
-    found: SearchState,
-    journal: TuningJournal,
-    stage: str,
-    packs: list[Optimiser],
-    group: Sequence[int],
-) -> None:
-    """One round of ask and tell for some joints; the others run their best so far."""
-    asked = [
-        packs[joint].ask() if joint in group and not packs[joint].done else np.empty((0, space.dimensions))
-        for joint in range(JOINTS)
-    ]
-    counts = [len(one) for one in asked]
-    rows = np.repeat(found.best[None], max(counts), axis=0)
-    for joint, points in enumerate(asked):
-        if len(points):
-            whole = np.repeat(points[:, None], JOINTS, axis=1)
-            rows[: len(points), joint] = space.controllers(whole)[:, joint]
-            found.narrowed += space.count_narrow(points[:, None])
-    costs = _evaluate(rows, counts, evaluate, found, journal, stage)
-    for joint, one in enumerate(packs):
-        if counts[joint]:
-            one.tell(costs[: counts[joint], joint])
