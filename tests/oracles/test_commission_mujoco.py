@@ -9,7 +9,7 @@ import pytest
 
 from greywhale.commission.judge import KEPT_SHARE, MOST_UNREST
 from greywhale.motion import human_reaches, multi_steps
-from tools.support.foreign_arm import Commissioned, commissioned
+from tools.support.foreign_arm import Commissioned, bench_of, commissioned, foreign_arm
 
 SEED = 2
 BUDGET, TRIALS = 400, 2  # a small share of the usual effort
@@ -20,7 +20,8 @@ HUMAN_SHARE = 0.15
 def test_an_arm_of_another_engine_follows_better_and_rests(tmp_path: Path) -> None:
     """With the AVR binary in between."""
     unseen = {"multi-steps": multi_steps(), "human reaches": human_reaches(1, 6.0)}
-    done = commissioned(SEED, tmp_path, unseen, budget=BUDGET, trials=TRIALS)
+    with bench_of(foreign_arm(SEED), tmp_path) as bench:
+        done = commissioned(bench, tmp_path, unseen, budget=BUDGET, trials=TRIALS)
     before, after = done.before, done.after
     # A joint that keeps its controller feels its neighbours' quicker moves.
     most = np.where(done.kept, 1.0 + KEPT_SHARE, 1.0)

@@ -1,7 +1,8 @@
-"""Commissioning arms that the model does not know (MuJoCo's, with play at the potentiometers), on a bench in lock
-step.
+"""Commissioning on a bench in lock step: the default arm, worn ones, and MuJoCo's with play at the potentiometers,
+which the model does not know.
 
-Judged on motions that a person leads and that the commissioning never sees. GREYWHALE_FOREIGN names other seeds.
+Judged on motions that a person leads and that the commissioning never sees. GREYWHALE_ARMS names other arms:
+"mujoco 7,worn 19,default 4".
 """
 
 from __future__ import annotations
@@ -16,32 +17,60 @@ import numpy as np
 
 from greywhale.base.study import Task
 from greywhale.commission.judge import MOST_UNREST
+from greywhale.files.model import arm_toml
+from greywhale_sim.assemble import BenchOptions
+from greywhale_sim.lockstep import LockStepBench
 from tools.benchmarks.figure import Figure, at_most
 from tools.benchmarks.study import repeat
 from tools.benchmarks.tuning import motions
-from tools.support.foreign_arm import Run, commissioned
+from tools.support.foreign_arm import Run, bench_of, commissioned, foreign_arm
+from tools.support.recordings import worn_arm
 
-SEEDS = tuple(map(int, os.environ.get("GREYWHALE_FOREIGN", "1 2 3 4 5").split()))
-WALL_S = 240.0
-HUMAN_SHARE = 0.15
+KINDS = {"default": range(1, 4), "worn": range(11, 19), "mujoco": (1, 2, 3, 4, 6)}
+ALL = ",".join(f"{kind} {seed}" for kind, seeds in KINDS.items() for seed in seeds)
+ARMS = os.environ.get("GREYWHALE_ARMS", ALL).split(",")
+WALL_S = 120.0
+HUMAN_SHARE = 0.06
+QUIET_V = 0.45
 
 
-def followed(seed: int) -> dict[str, Any]:
-    """How the arm of that seed follows before and after: a Run's fields each, and the wall time."""
-    with tempfile.TemporaryDirectory() as folder:
-        done = commissioned(seed, Path(folder), motions())
-    return {"before": asdict(done.before), "after": asdict(done.after), "wall_s": done.wall_s}
+def bench_with(kind: str, seed: int, folder: Path) -> LockStepBench:
+    """The bench with that arm."""
+    if kind == "mujoco":
+        return bench_of(foreign_arm(seed), folder)
+    if kind == "default":
+        return LockStepBench(BenchOptions(seed=seed))
+    path = folder / "worn.toml"
+    path.write_text(arm_toml(worn_arm(seed), "A worn arm."), encoding="utf-8")
+    return LockStepBench(BenchOptions(arm=path, seed=seed))
+
+
+def followed(kind: str, seed: int) -> dict[str, Any]:
+    """How that arm follows before and after: a Run's fields each, the wall time, and the sets tried on it."""
+    with tempfile.TemporaryDirectory() as name, bench_with(kind, seed, Path(name)) as bench:
+        done = commissioned(bench, Path(name), motions())
+    tried = len(done.outcome.trials.done) - 1
+    return {"before": asdict(done.before), "after": asdict(done.after), "wall_s": done.wall_s, "tried": tried}
+
+
+def task_of(arm: str) -> Task:
+    """For example "worn 12"."""
+    kind, seed = arm.split()
+    if kind not in KINDS:
+        raise ValueError(f"no arm is of the kind {kind!r}; there are {', '.join(KINDS)}")
+    return Task(arm, followed, int(seed), {"kind": kind})
 
 
 def run() -> list[Figure]:
-    found = repeat("commission", [Task(f"foreign arm {seed}", followed, seed) for seed in SEEDS])
+    found = repeat("commission", [task_of(arm) for arm in ARMS])
     figures: list[Figure] = []
     reaches = []
     for head, facts in found.items():
         before, after = Run(**facts["before"]), Run(**facts["after"])
         figures += judged(head, before, after, facts["wall_s"])
+        figures.append(Figure(f"{head}: sets tried on the arm", facts["tried"], ""))
         reaches.append(float(after.error["human reaches"].sum() / before.error["human reaches"].sum()))
-    return [*figures, at_most("foreign arms, human reaches: median", float(np.median(reaches)), "x", HUMAN_SHARE)]
+    return [*figures, at_most("all arms, human reaches: median", float(np.median(reaches)), "x", HUMAN_SHARE)]
 
 
 def judged(head: str, before: Run, after: Run, wall_s: float) -> list[Figure]:
@@ -60,8 +89,12 @@ def judged(head: str, before: Run, after: Run, wall_s: float) -> list[Figure]:
         ]
     rests, rested = after.unrest["multi-steps"], before.unrest["multi-steps"]
     hunting = int(((rests > MOST_UNREST) | (rests > 2.0 * rested)).sum())
+    quiet = np.fmax(QUIET_V, before.ripple["multi-steps"])
+    louder = float((after.ripple["multi-steps"] / quiet).max())
     return [
         *figures,
+        at_most(f"{head}: ripple at rest, worst joint, of what is allowed", louder, "x", 1.0),
+        Figure(f"{head}: most unrest at rest before", 1e3 * float(rested.max()), "mrad rms"),
         Figure(f"{head}: most unrest at rest", 1e3 * float(rests.max()), "mrad rms"),
         Figure(f"{head}: joints that hunt at rest", hunting, "", "0", hunting == 0),
         at_most(f"{head}: wall time", wall_s, "s", WALL_S),

@@ -34,30 +34,17 @@ from greywhale.tune.model import load_model
 from greywhale.tune.search.space import largest_ki
 from tools.benchmarks.figure import Figure, at_least
 from tools.benchmarks.study import repeat, threads
-from tools.support.recordings import random_arm, readings_of
+from tools.support.recordings import readings_of, worn_arm
 
 ARMS = range(11, 16)
 SETS = 30
 BUDGET = 300  # of the tuning
 WAIT_S = 1.6
-PLAY_RAD = (0.001, 0.010)
-MOST_LOAD = 0.15  # of the torque passed on, as friction
 REACHES = (41, 42)  # seeds that nothing else has
 # Variations: the largest logarithm of a factor, and the share of joints that keep their controller.
 VARIED = {"kp": 0.7, "kd": 0.7, "ki": 1.8, "ku_mv": 0.4}
 KEPT = 0.25
 ALIKE = 0.9
-
-
-def worn_arm(seed: int) -> ArmParameters:
-    """A random arm with play at its potentiometers and load friction."""
-    random = np.random.default_rng(500 + seed)
-    data = random_arm(seed).model_dump()
-    for pot, play in zip(data["follower_pots"]["joint"], random.uniform(*PLAY_RAD, JOINTS), strict=True):
-        pot["play"] = float(play)
-    for joint in data["joint"]:
-        joint["friction"]["load"] = float(random.uniform(0.0, MOST_LOAD))
-    return ArmParameters.model_validate(data, strict=False)
 
 
 def sets(arm: ArmParameters, seed: int) -> Iterator[Controllers]:

@@ -19,6 +19,7 @@ from greywhale.arm import ArmParameters
 from greywhale.arm.export import mjcf
 from greywhale.base.types import Floats
 from greywhale.cli.story import RunningBench, record_motion
+from greywhale.cli.story.recorder import HuntedError
 from greywhale.commission import CommissioningRequest, commission
 from greywhale.commission.result import CommissioningResult
 from greywhale.files.arm import load_arm
@@ -26,7 +27,7 @@ from greywhale.files.leader import save_leader
 from greywhale.files.model import arm_toml
 from greywhale.files.trajectory import Trajectory
 from greywhale.motion import evaluate
-from greywhale.motion.swings import unrest
+from greywhale.motion.swings import ripple_at_rest, unrest
 from greywhale.protocol.firmware import JOINTS, TICK_S
 from greywhale_sim.assemble import BenchOptions, build_bench
 from greywhale_sim.lockstep import LockStepBench
@@ -35,6 +36,7 @@ MASS, MOTOR = 0.1, 0.6  # masses are off by this share, motors by this logarithm
 FRICTION_V = (0.15, 0.9)
 PLAY_RAD = (0.002, 0.020)  # of the whole band
 NOISE_V = (0.001, 0.004)
+STILL_RAD = 0.02  # a leader's potentiometer at rest shows this much
 
 
 @dataclass(frozen=True)
@@ -135,10 +137,11 @@ def bench_of(arm: ForeignArm, folder: Path) -> LockStepBench:
 
 @dataclass(frozen=True)
 class Run:
-    """Errors (4,) rad² and unrest (4,) rad rms by motion."""
+    """Errors (4,) rad², and unrest (4,) rad rms and ripple (4,) V rms at rest, by motion."""
 
     error: dict[str, Floats]
     unrest: dict[str, Floats]
+    ripple: dict[str, Floats]
 
 
 @dataclass(frozen=True)
@@ -157,28 +160,32 @@ class Commissioned:
         return same
 
 
-def commissioned(seed: int, folder: Path, unseen: Mapping[str, Trajectory], **options: Any) -> Commissioned:
-    """Commission the arm of that seed on a bench in lock step."""
-    with bench_of(foreign_arm(seed), folder) as bench:
-        before = recorded(bench, folder, "before", unseen)
-        started = time.monotonic()
-        outcome = commission(CommissioningRequest(port=bench.port, out=folder / "commission", **options))
-        wall = time.monotonic() - started
-        return Commissioned(before, recorded(bench, folder, "after", unseen), outcome, wall)
+def commissioned(bench: RunningBench, folder: Path, unseen: Mapping[str, Trajectory], **options: Any) -> Commissioned:
+    """Commission the arm on this bench."""
+    before = recorded(bench, folder, "before", unseen)
+    started = time.monotonic()
+    outcome = commission(CommissioningRequest(port=bench.port, out=folder / "commission", **options))
+    wall = time.monotonic() - started
+    return Commissioned(before, recorded(bench, folder, "after", unseen), outcome, wall)
 
 
 def recorded(bench: RunningBench, folder: Path, when: str, unseen: Mapping[str, Trajectory]) -> Run:
-    """Every motion with the controllers that the board has."""
-    errors, rests = {}, {}
+    """Every motion with the controllers that the board has; infinite where the board ended it for its unrest."""
+    errors, rests, ripples = {}, {}, {}
     for name, motion in unseen.items():
         leader = folder / "leader.csv"
         save_leader(leader, motion)
-        log = record_motion(bench, leader, folder / f"{when} {name}.csv").log()
+        try:
+            log = record_motion(bench, leader, folder / f"{when} {name}.csv").log()
+        except HuntedError:
+            errors[name] = rests[name] = ripples[name] = np.full(JOINTS, np.inf)
+            continue
         errors[name] = np.array([joint.mse for joint in evaluate(log).joints])
         grid = np.arange(0.0, float(log.time[-1]), TICK_S)
-        even = [
-            np.column_stack([np.interp(grid, log.time, values[:, joint]) for joint in range(4)])
-            for values in (log.leader, log.follower)
-        ]
-        rests[name] = unrest(even[0], even[1], still_rad=0.02)
-    return Run(errors, rests)
+        led, followed, voltage = (
+            np.column_stack([np.interp(grid, log.time, values[:, joint]) for joint in range(JOINTS)])
+            for values in (log.leader, log.follower, log.voltage)
+        )
+        rests[name] = unrest(led, followed, STILL_RAD)
+        ripples[name] = ripple_at_rest(led, voltage, STILL_RAD)
+    return Run(errors, rests, ripples)

@@ -31,6 +31,8 @@ TABLES = ROOT / "shared" / "fuzzy_tables"
 # Within a tick, when the four conversions of a follower's potentiometer hold their input (ms).
 MOMENTS = (0.1, 0.3, 0.5, 0.7)
 SUPPLY = 15.0
+PLAY_RAD = (0.001, 0.010)
+MOST_LOAD = 0.15  # of the torque passed on, as friction
 START_S = 1.5  # the log begins that long after the motors went on, as `greywhale record` does
 
 
@@ -94,6 +96,17 @@ def readings_of(angles: Floats, arm: ArmParameters, table: ParameterTable, seed:
 def random_arm(seed: int) -> ArmParameters:
     """An arm drawn around the white box."""
     return draw_arm(load_arm("white_box"), seed)
+
+
+def worn_arm(seed: int) -> ArmParameters:
+    """A random arm with play at its potentiometers and load friction."""
+    random = np.random.default_rng(500 + seed)
+    data = random_arm(seed).model_dump()
+    for pot, play in zip(data["follower_pots"]["joint"], random.uniform(*PLAY_RAD, JOINTS), strict=True):
+        pot["play"] = float(play)
+    for joint in data["joint"]:
+        joint["friction"]["load"] = float(random.uniform(0.0, MOST_LOAD))
+    return ArmParameters.model_validate(data, strict=False)
 
 
 def record_three(arm: ArmParameters, folder: Path, seed: int = 1, seconds: float = 30.0) -> Recorded:

@@ -210,9 +210,9 @@ def ripple_of_record(voltage: Floats) -> Floats:
     return found
 
 
-def ripple_at_rest(leader: Floats, voltage: Floats) -> Floats:
+def ripple_at_rest(leader: Floats, voltage: Floats, still_rad: float = STILL_RAD) -> Floats:
     """The ripple (4,) over all rests; NaN for a joint whose leader never rests. A row a millisecond."""
-    return _swings_at_rest(leader, voltage, RIPPLE_S, STILL_RAD)
+    return _swings_at_rest(leader, voltage, RIPPLE_S, still_rad)
 
 
 def _ticks(seconds: float) -> int:
