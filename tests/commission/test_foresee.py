@@ -11,6 +11,7 @@ from greywhale.commission.foresee import MOST, Foresight, foresee
 from greywhale.commission.trials import Trials
 from greywhale.files.arm import default_arm
 from greywhale.motion import multi_steps
+from greywhale.motion.swings import unrest
 from greywhale.simulate.controllers import controllers_of
 from tests.commission.simulated import KI, KP, SimulatedRig
 
@@ -48,6 +49,14 @@ def test_a_joint_is_not_blamed_for_its_neighbours(trials: Trials, foresight: For
     assert not foresight.clauses(rows)[2], "it would be worse without"
     rows[2] = scaled(trials, 2, 0.9)[2]
     assert "follows steps worse" in foresight.clauses(rows)[2]
+
+
+def test_of_the_rests_between_steps_the_worst_counts(trials: Trials, foresight: Foresight) -> None:
+    """The yaw swings from before, but not after every step."""
+    rows = controllers_of(trials.table)[None]
+    _, restless = foresight.estimate(rows, foresight.plant)
+    (angles,) = foresight.experiment.run(rows, foresight.plant, every=1).angles
+    assert restless[0, 0, 0] > 1.5 * unrest(foresight.experiment.leader, angles.astype(np.float64))[0] > 5e-4
 
 
 def test_what_is_foreseen_happens_on_the_arm(trials: Trials, rig: SimulatedRig, foresight: Foresight) -> None:

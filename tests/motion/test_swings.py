@@ -15,6 +15,7 @@ from greywhale.motion.swings import (
     chatter,
     chatter_of_record,
     duty_swings,
+    most_unrest,
     rattle,
     rattle_of_record,
     ripple,
@@ -106,6 +107,17 @@ def test_unrest_is_what_the_follower_swings_while_its_leader_rests() -> None:
     assert found[[0, 2, 3]] == pytest.approx(np.zeros(3), abs=1e-12)
 
 
+def test_the_most_unrest_is_that_of_the_worst_rest() -> None:
+    """Of the rests in the record, joint 1 swings in the first alone."""
+    leader = staircase()
+    follower = leader.copy()
+    follower[TIME_S < 2.0, 1] += tone(7.0, 0.02)[TIME_S < 2.0]
+    found = most_unrest(leader, follower)
+    assert found[1] == pytest.approx(0.02, rel=0.3)
+    assert found[1] > 1.5 * unrest(leader, follower)[1]
+    assert found[[0, 2, 3]] == pytest.approx(np.zeros(3), abs=1e-12)
+
+
 def test_moving_is_no_unrest() -> None:
     """A slow follower still creeps when the leader has stopped, and the next move begins at the end of a rest."""
     leader = staircase()
@@ -117,6 +129,7 @@ def test_moving_is_no_unrest() -> None:
 def test_a_leader_that_never_rests_shows_no_unrest() -> None:
     leader = np.tile((0.3 * TIME_S)[:, None], (1, 4))
     assert np.isnan(unrest(leader, leader)).all()
+    assert np.isnan(most_unrest(leader, leader)).all()
 
 
 def test_rattle_is_what_the_follower_adds_between_6_and_40_hz() -> None:

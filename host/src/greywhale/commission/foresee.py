@@ -20,7 +20,7 @@ from greywhale.commission.measures import Measures, Traces, measure
 from greywhale.commission.motions import PARTS, Check
 from greywhale.commission.predict import predict
 from greywhale.motion import multi_steps
-from greywhale.motion.swings import unrest
+from greywhale.motion.swings import most_unrest
 from greywhale.protocol.firmware import JOINTS
 from greywhale.protocol.table import ParameterTable
 from greywhale.simulate import Experiment
@@ -51,12 +51,12 @@ class Foresight:
         return found
 
     def estimate(self, rows: Controllers, worse: Floats) -> tuple[Floats, Floats]:
-        """The same (n, 4) of many (n, 4, 13), in single precision, and the unrest (2, n, 4) between the steps, rad rms,
-        on the model and on a `worse` arm (1, columns).
+        """The same (n, 4) of many (n, 4, 13), in single precision, and the most unrest (2, n, 4) between two steps, rad
+        rms, on the model and on a `worse` arm (1, columns).
         """
         known, other = (self.experiment.run(rows, plant, every=1) for plant in (self.plant, worse))
         restless = [
-            [np.nan_to_num(unrest(self.experiment.leader, angles.astype(np.float64))) for angles in found.angles]
+            [np.nan_to_num(most_unrest(self.experiment.leader, angles.astype(np.float64))) for angles in found.angles]
             for found in (known, other)
         ]
         return known.mse / np.maximum(self.error, LEAST), np.array(restless)

@@ -13,6 +13,7 @@ takes them from here.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 
@@ -83,12 +84,23 @@ def smooth_motion(angles: Floats, row_s: float) -> Floats:
 
 def unrest(leader: Floats, follower: Floats, still_rad: float = STILL_RAD) -> Floats:
     """(4,) rad rms over all rests; NaN for a joint whose leader never rests. A row a millisecond."""
-    return _swings_at_rest(leader, follower, MEAN_S, still_rad)
+    return _rms(_swings_at_rest(leader, follower, MEAN_S, still_rad))
 
 
-def _swings_at_rest(leader: Floats, records: Floats, mean_s: float, still_rad: float) -> Floats:
-    """The rms (4,) of records (rows, 4) about their mean over `mean_s`, over all rests of each joint's leader."""
-    found = np.full(JOINTS, np.nan)
+def most_unrest(leader: Floats, follower: Floats) -> Floats:
+    """The same of the worst rest: swings that one pose or one throw wakes are few among those of all rests."""
+    found = _swings_at_rest(leader, follower, MEAN_S, STILL_RAD)
+    return np.array([max((np.sqrt(np.mean(swing**2)) for swing in swings), default=np.nan) for swings in found])
+
+
+def _rms(swings: Sequence[Sequence[Floats]]) -> Floats:
+    """Of each joint's swings together; NaN for a joint without any."""
+    return np.array([np.sqrt(np.mean(np.concatenate(some) ** 2)) if some else np.nan for some in swings])
+
+
+def _swings_at_rest(leader: Floats, records: Floats, mean_s: float, still_rad: float) -> list[list[Floats]]:
+    """Of each joint, the records (rows, 4) about their mean over `mean_s` in every rest of its leader."""
+    found: list[list[Floats]] = []
     window, mean, least = (round(seconds / TICK_S) for seconds in (REST_AFTER_S, mean_s, SHORTEST_REST_S))
     for joint in range(JOINTS):
         rest = resting(leader[:, joint], window, still_rad)
@@ -98,8 +110,7 @@ def _swings_at_rest(leader: Floats, records: Floats, mean_s: float, still_rad: f
             path = records[first : last - mean, joint]
             if len(path) >= least:
                 swings.append(path - scipy.ndimage.uniform_filter1d(path, mean, mode="nearest"))
-        if swings:
-            found[joint] = np.sqrt(np.mean(np.concatenate(swings) ** 2))
+        found.append(swings)
     return found
 
 
@@ -212,7 +223,7 @@ def ripple_of_record(voltage: Floats) -> Floats:
 
 def ripple_at_rest(leader: Floats, voltage: Floats, still_rad: float = STILL_RAD) -> Floats:
     """The ripple (4,) over all rests; NaN for a joint whose leader never rests. A row a millisecond."""
-    return _swings_at_rest(leader, voltage, RIPPLE_S, still_rad)
+    return _rms(_swings_at_rest(leader, voltage, RIPPLE_S, still_rad))
 
 
 def _ticks(seconds: float) -> int:
