@@ -6,7 +6,7 @@
 #include <cstdint>
 
 #include "interrupts.h"
-#include "simavr.h"
+#include "mcu.h"
 
 namespace board {
 
@@ -14,7 +14,7 @@ class Adc {
  public:
   static constexpr unsigned input_count = 8;
 
-  Adc(avr_t& avr, const Chip& chip, Interrupts& interrupts);
+  Adc(Mcu& mcu, const Chip& chip, Interrupts& interrupts);
   void reset();
 
   // Voltages at ADC0..7 from now on. A conversion that has already sampled keeps what it took.
@@ -35,7 +35,7 @@ class Adc {
   void sample();
   void sample_if_due(uint64_t cycle);
   double pulled_up(unsigned input) const;
-  avr_cycle_count_t on_done(avr_cycle_count_t when);
+  void on_done(uint64_t when);
 
   void write_control(uint16_t reg, uint8_t value);
   void write_mux(uint16_t reg, uint8_t value);
@@ -43,10 +43,9 @@ class Adc {
   uint8_t read_low(uint16_t reg);
   uint8_t read_high(uint16_t reg);
 
-  avr_t& avr_;
+  Mcu& mcu_;
   const Chip& chip_;
   Interrupts& interrupts_;
-  avr_int_vector_t* vector_ = nullptr;
 
   std::array<double, input_count> millivolts_{};
   uint8_t floating_ = 0, joined_ = 0;

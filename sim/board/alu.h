@@ -5,7 +5,7 @@
 
 #include <cstdint>
 
-#include "simavr.h"
+#include "mcu.h"
 
 namespace board {
 
@@ -13,19 +13,19 @@ class Alu {
  public:
   explicit Alu(const uint8_t* flags) { load(flags); }
 
-  // From and to simavr, which keeps each flag in a byte of its own. T and I stay there.
+  // From and to the flags of SREG, each in a byte of its own. T and I stay there.
   void load(const uint8_t* flags) {
-    carries_ = flags[S_H] * half | flags[S_C] * out | (flags[S_C] ^ flags[S_V]) * in;
-    nonzero_ = !flags[S_Z];
-    sign_ = flags[S_N] * negative_bit | (flags[S_S] ^ flags[S_N] ^ flags[S_V]) * odd_sign;
+    carries_ = flags[flag::H] * half | flags[flag::C] * out | (flags[flag::C] ^ flags[flag::V]) * in;
+    nonzero_ = !flags[flag::Z];
+    sign_ = flags[flag::N] * negative_bit | (flags[flag::S] ^ flags[flag::N] ^ flags[flag::V]) * odd_sign;
   }
   void store(uint8_t* flags) const {
-    flags[S_C] = carry();
-    flags[S_Z] = zero();
-    flags[S_N] = negative();
-    flags[S_V] = overflow();
-    flags[S_S] = sign();
-    flags[S_H] = half_carry();
+    flags[flag::C] = carry();
+    flags[flag::Z] = zero();
+    flags[flag::N] = negative();
+    flags[flag::V] = overflow();
+    flags[flag::S] = sign();
+    flags[flag::H] = half_carry();
   }
 
   bool carry() const { return carries_ & out; }

@@ -144,9 +144,7 @@ void bind_running(BoardClass& c) {
            "Arguments and results are in the registers, data addresses 0..31.")
       .def_prop_ro("cycle", &PyBoard::cycle)
       .def_prop_rw("pc", &PyBoard::pc, &PyBoard::set_pc, "Program counter, a byte address.")
-      .def_prop_ro("in_bootloader", &PyBoard::in_bootloader)
-      .def("use_reference_decoder", &PyBoard::use_reference_decoder, "on"_a,
-           "Execute with simavr's own, slower instruction decoder: the reference for tests of the fast one.");
+      .def_prop_ro("in_bootloader", &PyBoard::in_bootloader);
 }
 
 void bind_memory(BoardClass& c) {
@@ -215,7 +213,7 @@ void bind_serial(BoardClass& c) {
 }  // namespace
 
 NB_MODULE(_board, m) {
-  m.doc() = "The simulated Arduino over libsimavr.";
+  m.doc() = "The simulated Arduino.";
   nb::exception<BoardError>(m, "BoardError", PyExc_ValueError);
   bind_stats(m);
   BoardClass board(m, "Board",

@@ -4,7 +4,7 @@
 
 #include <array>
 #include <cstdint>
-#include <memory>
+#include <deque>
 #include <string>
 #include <vector>
 
@@ -14,12 +14,13 @@
 #include "eeprom.h"
 #include "flash.h"
 #include "interrupts.h"
+#include "mcu.h"
 #include "ports.h"
 #include "prescaler.h"
-#include "simavr.h"
 #include "timer.h"
 #include "trace.h"
 #include "uart.h"
+#include "watchdog.h"
 
 namespace board {
 
@@ -40,7 +41,6 @@ struct Segment {
 class Board {
  public:
   explicit Board(const std::string& chip);
-  ~Board();
   Board(const Board&) = delete;
   Board& operator=(const Board&) = delete;
 
@@ -62,7 +62,7 @@ class Board {
   // Runs to the first instruction boundary at or after the cycle. Without power only time passes.
   RunState run_until(uint64_t cycle);
   RunState state() const;
-  const std::string& crash_reason() const { return hooks_.last_error; }
+  const std::string& crash_reason() const { return mcu_.crash_reason; }
 
   // Runs a compiled function as if called, interrupts off, and returns its exact cycles, RET included. Arguments and
   // results are in the registers of the ABI (data addresses 0..31), which stay as the function leaves them. Throws if
@@ -72,12 +72,10 @@ class Board {
   // Bytes to USART0; without power they are lost.
   void send(const std::string& bytes);
 
-  uint64_t cycle() const { return avr_->cycle; }
-  uint32_t pc() const { return avr_->pc; }
-  void set_pc(uint32_t address) { avr_->pc = address & avr_->flashend & ~1u; }
-  // Execute with simavr's own, slower instruction decoder: the reference that the fast one is tested against.
-  void use_reference_decoder(bool on) { reference_decoder_ = on; }
-  bool in_bootloader() const { return avr_->pc >= boot_start_; }
+  uint64_t cycle() const { return mcu_.cycle; }
+  uint32_t pc() const { return mcu_.pc; }
+  void set_pc(uint32_t address) { mcu_.pc = address & (chip_.flash_bytes - 1) & ~1u; }
+  bool in_bootloader() const { return mcu_.pc >= boot_start_; }
   std::string peek(uint32_t address, uint32_t count);
   void poke(uint32_t address, const std::string& bytes);
 
@@ -94,11 +92,11 @@ class Board {
   void let_pin_go(const std::string& port, unsigned bit);
 
   const Chip& chip() const { return chip_; }
-  Uart& uart() { return *uart_; }
-  Adc& adc() { return *adc_; }
-  Eeprom& eeprom() { return *eeprom_; }
-  const Flash& flash_model() const { return *flash_; }
-  const Interrupts& interrupts() const { return *interrupts_; }
+  Uart& uart() { return uart_; }
+  Adc& adc() { return adc_; }
+  Eeprom& eeprom() { return eeprom_; }
+  const Flash& flash_model() const { return flash_; }
+  const Interrupts& interrupts() const { return interrupts_; }
   const Stats& stats() const { return stats_; }
   uint64_t trace_hash() const { return trace_.hash(); }
 
@@ -109,41 +107,35 @@ class Board {
     uint16_t port = 0;
     unsigned bit = 0;
   };
-  struct FreeAvr {
-    void operator()(avr_t* avr) const;
-  };
 
-  void build_models();
   void restart(uint8_t cause);
   void step();
-  bool ended() const { return avr_->state == cpu_Done || avr_->state == cpu_Crashed; }
-  avr_cycle_count_t on_stop(avr_cycle_count_t) { return 0; }
+  void sleep();
+  bool ended() const { return state() != RunState::running; }
+  void on_stop(uint64_t) {}
   Output find_duty(unsigned timer, const std::string& channel);
   Output find_pin(const std::string& port, unsigned bit) const;
   void require_memory(uint32_t address, size_t count) const;
 
   const Chip& chip_;
-  Hooks hooks_;
-  std::unique_ptr<avr_t, FreeAvr> avr_;
-  avr_run_t normal_run_ = nullptr;
+  Mcu mcu_;
   Trace trace_;
-  std::unique_ptr<Cpu> cpu_;
-  std::unique_ptr<Interrupts> interrupts_;
-  std::unique_ptr<Ports> ports_;
-  std::unique_ptr<Uart> uart_;
-  std::unique_ptr<Adc> adc_;
-  std::unique_ptr<Eeprom> eeprom_;
-  std::unique_ptr<Flash> flash_;
-  std::vector<std::unique_ptr<Timer>> timers_;
-  std::unique_ptr<Prescaler> prescaler_;
-  avr_watchdog_t* watchdog_ = nullptr;  // simavr's own
+  Cpu cpu_;
+  Interrupts interrupts_;
+  Watchdog watchdog_;
+  Ports ports_;
+  Uart uart_;
+  Adc adc_;
+  Eeprom eeprom_;
+  Flash flash_;
+  std::deque<Timer> timers_;
+  Prescaler prescaler_;
   std::vector<Output> outputs_;
   Stats stats_;
   uint32_t boot_start_ = UINT32_MAX;
   uint64_t stop_at_ = 0;
   bool powered_ = false;
   bool browned_out_ = false;  // powered, but held in reset
-  bool reference_decoder_ = false;
 };
 
 }  // namespace board

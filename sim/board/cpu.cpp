@@ -1,16 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Execution of AVR instructions. Program counter, time and deadline live in local variables; simavr's own fields are
-// brought up to date around everything that may look at them, such as the register hooks of the peripherals.
+// Execution of AVR instructions. Program counter, time and deadline live in local variables; the fields of
+// the Mcu are brought up to date around everything that may look at them, such as the register hooks of the
+// peripherals.
 #include "cpu.h"
 
-#include <algorithm>
-#include <cstdio>
-
 #include "alu.h"
-
-extern "C" {
-#include <simavr/avr_flash.h>
-}
 
 #define ALWAYS_INLINE __attribute__((always_inline))
 
@@ -18,16 +12,15 @@ namespace board {
 
 namespace {
 
-constexpr uint32_t first_io = AVR_IO_TO_DATA(0);
 constexpr size_t longest_step = 3;  // words from an instruction to the next without a jump
 
 }  // namespace
 
-Cpu::Cpu(avr_t& avr, const Chip& chip)
-    : avr_(avr),
-      decoder_(avr.flash, (avr.flashend + 1) / 2, chip.wide_pc),
-      mask_((avr.flashend + 1) / 2 - 1),
-      wide_pc_(chip.wide_pc),
+Cpu::Cpu(Mcu& mcu)
+    : mcu_(mcu),
+      decoder_(mcu.flash.data(), mcu.chip.flash_bytes / 2, mcu.chip.wide_pc),
+      mask_(mcu.chip.flash_bytes / 2 - 1),
+      wide_pc_(mcu.chip.wide_pc),
       decoded_(mask_ + 1) {
   decoded_.resize(decoded_.size() + longest_step, {Code::wrapped});  // the flash begins anew behind its end
 }
@@ -38,47 +31,6 @@ void Cpu::flash_changed(uint32_t address, uint32_t count) {
   for (uint32_t word = first; word < first + words; ++word) decoded_[word & mask_] = {};
 }
 
-void Cpu::crash(const char* what, uint32_t value) {
-  char text[120];
-  std::snprintf(text, sizeof text, "%s 0x%04X", what, value);
-  hooks_of(avr_).last_error = text;
-  avr_.state = cpu_Crashed;
-}
-
-uint8_t Cpu::read_register(uint32_t address) {
-  uint8_t* const data = avr_.data;
-  if (address > avr_.ramend) {
-    crash("a read beyond the end of RAM, from", address);
-    return 0;
-  }
-  if (address == reg::SREG) {
-    unsigned sreg = 0;
-    for (unsigned bit = 0; bit < 8; ++bit) sreg |= static_cast<unsigned>(avr_.sreg[bit]) << bit;
-    data[address] = static_cast<uint8_t>(sreg);
-  } else if (address - 32 < MAX_IOs) {
-    const auto& hook = avr_.io[AVR_DATA_TO_IO(address)].r;
-    if (hook.c) data[address] = hook.c(&avr_, static_cast<avr_io_addr_t>(address), hook.param);
-  }
-  return data[address];
-}
-
-void Cpu::write_register(uint32_t address, uint8_t value) {
-  if (address > avr_.ramend) {
-    crash("a write beyond the end of RAM, to", address);
-    return;
-  }
-  if (address == reg::SREG) {
-    for (uint8_t bit = 0; bit < 8; ++bit) avr_sreg_set(&avr_, bit, value >> bit & 1);
-  } else if (address - 32 < MAX_IOs) {
-    const auto& hook = avr_.io[AVR_DATA_TO_IO(address)].w;
-    if (hook.c) {
-      hook.c(&avr_, static_cast<avr_io_addr_t>(address), value, hook.param);
-      return;
-    }
-  }
-  avr_.data[address] = value;
-}
-
 // What the instructions of one run work on. Nothing but run() knows its address, so a compiler keeps its members in
 // registers from one instruction to the next.
 struct Cpu::State {
@@ -87,44 +39,40 @@ struct Cpu::State {
   ALWAYS_INLINE uint32_t pc() const { return static_cast<uint32_t>(op - decoded); }
   ALWAYS_INLINE const Instruction* at(uint32_t address) const { return decoded + (address & mask); }
 
-  // ---- simavr ----
+  // ---- the Mcu ----
 
   ALWAYS_INLINE void hand_over() const {
-    avr.pc = pc() * 2;
-    avr.cycle = cycle;
-    avr.run_cycle_count = deadline > cycle ? deadline - cycle : 1;
+    mcu.pc = pc() * 2;
+    mcu.cycle = cycle;
   }
   ALWAYS_INLINE void take_back() {
-    cycle = avr.cycle;
-    deadline = avr.interrupt_state || avr.state != cpu_Running ? 0 : cycle + avr.run_cycle_count;
+    cycle = mcu.cycle;
+    deadline = mcu.deadline();
   }
   ALWAYS_INLINE void refuse() {
+    mcu.crash("an invalid instruction,", static_cast<uint32_t>(flash[2 * pc()] | flash[2 * pc() + 1] << 8));
+    deadline = 0;
+  }
+  ALWAYS_INLINE void request(const Mcu::Action& action) {
     hand_over();
-    cpu.crash("an invalid instruction,", static_cast<uint32_t>(flash[2 * pc()] | flash[2 * pc() + 1] << 8));
+    action();
     take_back();
   }
-  ALWAYS_INLINE void request(uint32_t what) {
-    hand_over();
-    avr_ioctl(&avr, what, nullptr);
-    take_back();
-  }
-  ALWAYS_INLINE void set_flag(uint8_t value) {
+  ALWAYS_INLINE void set_flag(bool value) {
     alu.store(flags);
-    hand_over();
-    avr_sreg_set(&avr, op->r, value);
-    take_back();
+    if (op->r == flag::I) mcu.set_interrupt_flag(value);
+    else flags[op->r] = value;
+    deadline = mcu.deadline();
     alu.load(flags);
   }
   ALWAYS_INLINE void allow_interrupts() {
-    hand_over();
-    avr_sreg_set(&avr, S_I, 1);
-    avr_interrupt_reti(&avr);
-    take_back();
+    mcu.set_interrupt_flag(true);
+    request(mcu.reti);
   }
   ALWAYS_INLINE void fall_asleep() {
-    hand_over();
-    if (!avr_has_pending_interrupts(&avr) || !flags[S_I]) avr.state = cpu_Sleeping;
-    take_back();
+    if (mcu.pending && flags[flag::I]) return;
+    mcu.state = Mcu::State::asleep;
+    deadline = 0;
   }
 
   // ---- operands and memory ----
@@ -137,20 +85,22 @@ struct Cpu::State {
 
   ALWAYS_INLINE bool in_ram(uint32_t address) const { return __builtin_expect(address - first_ram < ram_size, true); }
   ALWAYS_INLINE uint8_t read_io(uint32_t address) {
-    if (address - first_io < MAX_IOs && !avr.io[address - first_io].r.c && address != reg::SREG) return data[address];
+    if (address - first_register < register_count && !registers[address - first_register].read && address != reg::SREG)
+      return data[address];
     if (address == reg::SREG) alu.store(flags);
     hand_over();
-    const uint8_t value = cpu.read_register(address);
+    const uint8_t value = mcu.read(address);
     take_back();
     return value;
   }
   ALWAYS_INLINE void write_io(uint32_t address, unsigned value) {
-    if (address - first_io < MAX_IOs && !avr.io[address - first_io].w.c && address != reg::SREG) {
+    if (address - first_register < register_count && !registers[address - first_register].write &&
+        address != reg::SREG) {
       data[address] = static_cast<uint8_t>(value);
       return;
     }
     hand_over();
-    cpu.write_register(address, static_cast<uint8_t>(value));
+    mcu.write(address, static_cast<uint8_t>(value));
     take_back();
     if (address == reg::SREG) alu.load(flags);
   }
@@ -165,7 +115,7 @@ struct Cpu::State {
     data[low + 1] = static_cast<uint8_t>(value >> 8);
   }
   ALWAYS_INLINE uint32_t extended_z(uint16_t high) const {
-    return word(R_ZL) | static_cast<uint32_t>(data[high]) << 16;
+    return word(reg::ZL) | static_cast<uint32_t>(data[high]) << 16;
   }
   ALWAYS_INLINE void load_and_move(uint32_t pointer, uint32_t moved) {
     const uint8_t value = read(pointer & 0xFFFFu);
@@ -178,7 +128,7 @@ struct Cpu::State {
   }
   ALWAYS_INLINE uint8_t load_flash_and_move(uint32_t z) {
     d() = flash[z & flash_end];
-    set_word(R_ZL, z + 1);
+    set_word(reg::ZL, z + 1);
     return static_cast<uint8_t>((z + 1) >> 16);
   }
 
@@ -218,23 +168,23 @@ struct Cpu::State {
   }
 
   Cpu& cpu;
-  avr_t& avr = cpu.avr_;
-  uint8_t* const data = avr.data;
-  uint8_t* const flags = avr.sreg;
-  const uint8_t* const flash = avr.flash;
+  Mcu& mcu = cpu.mcu_;
+  uint8_t* const data = mcu.data.data();
+  uint8_t* const flags = mcu.flags.data();
+  const uint8_t* const flash = mcu.flash.data();
+  const Mcu::Register* const registers = mcu.registers.data();
   Instruction* const decoded = cpu.decoded_.data();
-  const uint32_t mask = cpu.mask_, flash_end = avr.flashend, first_ram = avr.ioend + 1u,
-                 ram_size = avr.ramend - avr.ioend;
+  const uint32_t mask = cpu.mask_, flash_end = mcu.chip.flash_bytes - 1, first_ram = mcu.chip.first_ram,
+                 ram_size = mcu.chip.ram_end + 1u - first_ram, register_count = first_ram - first_register;
   const bool wide_pc = cpu.wide_pc_;
   Alu alu{flags};
-  const Instruction* op = decoded + avr.pc / 2;
+  const Instruction* op = decoded + mcu.pc / 2;
   const Instruction* next = op;
-  uint64_t cycle = avr.cycle;
-  // An interrupt that waits for one more instruction is a deadline that has passed.
-  uint64_t deadline = avr.interrupt_state ? 0 : cycle + avr.run_cycle_count;
+  uint64_t cycle = mcu.cycle;
+  uint64_t deadline = mcu.deadline();
 };
 
-avr_flashaddr_t Cpu::run() {
+void Cpu::run() {
   State s(*this);
 
   // A jump of its own behind each instruction: the processor foresees it by the instruction before.
@@ -298,10 +248,11 @@ wrapped:
   ON(fmuls, s.set_word(0, s.alu.product(s.signed_d() * s.signed_r(), true)));
   ON(fmulsu, s.set_word(0, s.alu.product(s.signed_d() * static_cast<int>(s.r()), true)));
 
-  ON(bset, s.set_flag(1));
-  ON(bclr, s.set_flag(0));
-  ON(bst, s.flags[S_T] = static_cast<uint8_t>(s.d() >> s.op->r & 1));
-  ON(bld, s.d() = static_cast<uint8_t>((s.d() & ~(1u << s.op->r)) | static_cast<unsigned>(s.flags[S_T]) << s.op->r));
+  ON(bset, s.set_flag(true));
+  ON(bclr, s.set_flag(false));
+  ON(bst, s.flags[flag::T] = static_cast<uint8_t>(s.d() >> s.op->r & 1));
+  ON(bld,
+     s.d() = static_cast<uint8_t>((s.d() & ~(1u << s.op->r)) | static_cast<unsigned>(s.flags[flag::T]) << s.op->r));
   ON(sbi, s.write_io(s.op->k, s.read_io(s.op->k) | s.op->r));
   ON(cbi, s.write_io(s.op->k, s.read_io(s.op->k) & ~static_cast<unsigned>(s.op->r)));
 
@@ -318,17 +269,17 @@ wrapped:
   ON(push, s.push(s.d()));
   ON(pop, s.d() = s.pop());
 
-  ON(lpm, s.d() = s.flash[s.word(R_ZL) & s.flash_end]);
+  ON(lpm, s.d() = s.flash[s.word(reg::ZL) & s.flash_end]);
   ON(elpm, s.d() = s.flash[s.extended_z(reg::RAMPZ) & s.flash_end]);
-  ON(lpm_increment, s.load_flash_and_move(s.word(R_ZL)));
+  ON(lpm_increment, s.load_flash_and_move(s.word(reg::ZL)));
   ON(elpm_increment, s.data[reg::RAMPZ] = s.load_flash_and_move(s.extended_z(reg::RAMPZ)));
-  ON(spm, s.request(AVR_IOCTL_FLASH_SPM));
+  ON(spm, s.request(s.mcu.spm));
 
   ON(jump, s.next = s.at(s.op->k));
   ON(call, s.call(s.op->k, s.pc() + s.op->d));
-  ON(ijmp, s.next = s.at(s.word(R_ZL)));
+  ON(ijmp, s.next = s.at(s.word(reg::ZL)));
   ON(eijmp, s.next = s.at(s.extended_z(reg::EIND)));
-  ON(icall, s.call(s.word(R_ZL), s.pc() + 1));
+  ON(icall, s.call(s.word(reg::ZL), s.pc() + 1));
   ON(eicall, s.call(s.extended_z(reg::EIND), s.pc() + 1));
   ON(reti, s.allow_interrupts(), s.go_back());
   ON(ret, s.go_back());
@@ -338,22 +289,22 @@ wrapped:
   ON(branch_by_overflow, s.branch(s.alu.overflow() == s.op->d));
   ON(branch_by_sign, s.branch(s.alu.sign() == s.op->d));
   ON(branch_by_half_carry, s.branch(s.alu.half_carry() == s.op->d));
-  ON(branch_by_transfer, s.branch(s.flags[S_T] == s.op->d));
-  ON(branch_by_interrupts, s.branch(s.flags[S_I] == s.op->d));
+  ON(branch_by_transfer, s.branch(s.flags[flag::T] == s.op->d));
+  ON(branch_by_interrupts, s.branch(s.flags[flag::I] == s.op->d));
   ON(cpse, s.skip(s.d() == s.r(), s.op->k));
   ON(sbrc, s.skip(!(s.d() >> s.op->r & 1), s.op->k));
   ON(sbrs, s.skip(s.d() >> s.op->r & 1, s.op->k));
   ON(sbic, s.skip(!(s.read_io(s.op->k) & s.op->r), s.op->d));
   ON(sbis, s.skip(s.read_io(s.op->k) & s.op->r, s.op->d));
   ON(sleep, s.fall_asleep());
-  ON(wdr, s.request(AVR_IOCTL_WATCHDOG_RESET));
+  ON(wdr, s.request(s.mcu.wdr));
 #undef ON
 #undef DISPATCH
 
 due:
   s.alu.store(s.flags);
-  avr_.cycle = s.cycle;
-  return (s.pc() & mask_) * 2;
+  mcu_.cycle = s.cycle;
+  mcu_.pc = (s.pc() & mask_) * 2;
 }
 
 }  // namespace board

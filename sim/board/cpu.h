@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The CPU: executes decoded instructions on simavr's state, several times as fast as simavr's own decoder.
+// The CPU: executes instructions that are decoded once.
 #pragma once
 
 #include <cstdint>
@@ -7,17 +7,17 @@
 
 #include "chip.h"
 #include "instruction.h"
-#include "simavr.h"
+#include "mcu.h"
 
 namespace board {
 
 class Cpu {
  public:
-  Cpu(avr_t& avr, const Chip& chip);
+  explicit Cpu(Mcu& mcu);
 
-  // Like simavr's avr_run_one(): executes until the next event is due, an interrupt wants attention, or the CPU
-  // sleeps or crashes. Returns where the program goes on (a byte address).
-  avr_flashaddr_t run();
+  // Executes at least one instruction, and on until the next event is due, an interrupt wants attention, or the CPU
+  // sleeps or crashes.
+  void run();
 
   // Forgets what was decoded there.
   void flash_changed(uint32_t address, uint32_t count);
@@ -25,12 +25,7 @@ class Cpu {
  private:
   struct State;
 
-  // Everything but plain RAM: registers with their hooks, SREG, addresses that do not exist.
-  uint8_t read_register(uint32_t address);
-  void write_register(uint32_t address, uint8_t value);
-  void crash(const char* what, uint32_t value);
-
-  avr_t& avr_;
+  Mcu& mcu_;
   Decoder decoder_;
   uint32_t mask_;  // word addresses wrap
   bool wide_pc_;

@@ -4,20 +4,20 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "interrupts.h"
-#include "simavr.h"
+#include "mcu.h"
 #include "trace.h"
 
 namespace board {
 
 class Eeprom {
  public:
-  Eeprom(avr_t& avr, avr_eeprom_t& stock, Interrupts& interrupts, Trace& trace);
+  Eeprom(Mcu& mcu, Interrupts& interrupts, Trace& trace);
   // A reset does not stop a write under way; losing power does.
   void reset();
   void lose_power(uint64_t seed);
-  void refresh_interrupt();
 
   std::string content() const;
   void set_content(const std::string& bytes);
@@ -26,18 +26,19 @@ class Eeprom {
  private:
   enum class Mode : uint8_t { erase_and_write = 0, erase = 1, write = 2, reserved = 3 };
 
-  uint8_t& control() { return avr_.data[reg::EECR]; }
+  uint8_t& control() { return mcu_.data[reg::EECR]; }
   uint16_t address() const;
   uint64_t busy_cycles(Mode mode) const;
-  avr_cycle_count_t on_done(avr_cycle_count_t when);
-  avr_cycle_count_t on_window_closed(avr_cycle_count_t when);
+  void on_done(uint64_t when);
+  void on_window_closed(uint64_t when);
+  void refresh_interrupt();
   void write_control(uint16_t reg, uint8_t value);
 
-  avr_t& avr_;
-  avr_eeprom_t& stock_;  // owns the bytes and the interrupt vector
+  Mcu& mcu_;
   Interrupts& interrupts_;
   Trace& trace_;
 
+  std::vector<uint8_t> cells_;
   bool busy_ = false;
   uint64_t begin_ = 0;
   uint64_t end_ = 0;

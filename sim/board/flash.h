@@ -7,30 +7,29 @@
 
 #include "chip.h"
 #include "cpu.h"
-#include "simavr.h"
+#include "mcu.h"
 #include "trace.h"
 
 namespace board {
 
 class Flash {
  public:
-  Flash(avr_t& avr, const Chip& chip, Cpu& cpu, Trace& trace);
+  Flash(Mcu& mcu, const Chip& chip, Cpu& cpu, Trace& trace);
   void reset();
   // From here up nothing is written: the boot lock bits of an Arduino.
   void protect_from(uint32_t address) { protected_from_ = address; }
   uint64_t page_writes() const { return page_writes_; }
 
  private:
-  static int on_spm(avr_io_t* io, uint32_t request, void*);
   void store_program_memory();
   void fill_buffer(uint32_t address);
   void program_page(uint32_t address, bool erase);
   void clear_buffer();
   void write_control(uint16_t reg, uint8_t value);
-  avr_cycle_count_t on_window_closed(avr_cycle_count_t when);
-  avr_cycle_count_t on_done(avr_cycle_count_t when);
+  void on_window_closed(uint64_t when);
+  void on_done(uint64_t when);
 
-  avr_t& avr_;
+  Mcu& mcu_;
   const Chip& chip_;
   Cpu& cpu_;
   Trace& trace_;

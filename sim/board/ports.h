@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The digital ports: what the program drives, and what something outside holds at a level. Any other input reads its
-// pull-up. There are no external and pin-change interrupts; simavr's own model would signal eight listeners on every
-// write.
+// pull-up. There are no external and pin-change interrupts.
 #pragma once
 
 #include <array>
@@ -9,18 +8,17 @@
 #include <cstring>
 
 #include "chip.h"
-#include "simavr.h"
+#include "mcu.h"
 
 namespace board {
 
 class Ports {
  public:
-  Ports(avr_t& avr, const Chip& chip) : avr_(avr) {
+  Ports(Mcu& mcu, const Chip& chip) : mcu_(mcu) {
     for (const char* letter = chip.ports; *letter; ++letter) {
       const uint16_t pin = port_base(*letter);
-      for (uint16_t reg = pin; reg < pin + 3; ++reg) plain_register(avr_, reg);
-      on_read<&Ports::read_pin>(avr_, pin, *this);
-      on_write<&Ports::write_pin>(avr_, pin, *this);
+      on_read<&Ports::read_pin>(mcu_, pin, *this);
+      on_write<&Ports::write_pin>(mcu_, pin, *this);
     }
   }
 
@@ -28,7 +26,7 @@ class Ports {
 
   // The pin is an output and high.
   bool driven_high(uint16_t pin_register, unsigned bit) const {
-    return (avr_.data[pin_register + 1] & avr_.data[pin_register + 2]) >> bit & 1;
+    return (mcu_.data[pin_register + 1] & mcu_.data[pin_register + 2]) >> bit & 1;
   }
 
   // Something outside holds a pin at a level until it lets go, through resets and power cuts too. It only matters while
@@ -59,12 +57,12 @@ class Ports {
   // An output reads what it drives, a free input its pull-up: PORTx in both cases.
   uint8_t read_pin(uint16_t reg) {
     const Held& held = held_[place(reg)];
-    const auto outside = static_cast<uint8_t>(held.mask & ~avr_.data[reg + 1]);
-    return static_cast<uint8_t>((avr_.data[reg + 2] & ~outside) | (held.levels & outside));
+    const auto outside = static_cast<uint8_t>(held.mask & ~mcu_.data[reg + 1]);
+    return static_cast<uint8_t>((mcu_.data[reg + 2] & ~outside) | (held.levels & outside));
   }
-  void write_pin(uint16_t reg, uint8_t value) { avr_.data[reg + 2] ^= bits_written(avr_, value); }
+  void write_pin(uint16_t reg, uint8_t value) { mcu_.data[reg + 2] ^= bits_written(mcu_, value); }
 
-  avr_t& avr_;
+  Mcu& mcu_;
   std::array<Held, port_count> held_{};
 };
 

@@ -3,21 +3,18 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
-#include <utility>
-#include <vector>
+#include <deque>
 
 #include "chip.h"
-#include "simavr.h"
+#include "mcu.h"
 #include "timer.h"
 
 namespace board {
 
 class Prescaler {
  public:
-  Prescaler(avr_t& avr, std::vector<Timer*> timers) : avr_(avr), timers_(std::move(timers)) {
-    plain_register(avr_, reg::GTCCR);
-    on_write<&Prescaler::write_control>(avr_, reg::GTCCR, *this);
+  Prescaler(Mcu& mcu, std::deque<Timer>& timers) : mcu_(mcu), timers_(timers) {
+    on_write<&Prescaler::write_control>(mcu_, reg::GTCCR, *this);
   }
 
  private:
@@ -25,13 +22,13 @@ class Prescaler {
 
   // The bits clear themselves. Holding the timers with TSM is not modelled.
   void write_control(uint16_t reg, uint8_t value) {
-    avr_.data[reg] = value & TSM;
-    for (Timer* timer : timers_)
-      if (value & (timer->number() == 2 ? PSRASY : PSRSYNC)) timer->restart_prescaler();
+    mcu_.data[reg] = value & TSM;
+    for (Timer& timer : timers_)
+      if (value & (timer.number() == 2 ? PSRASY : PSRSYNC)) timer.restart_prescaler();
   }
 
-  avr_t& avr_;
-  std::vector<Timer*> timers_;
+  Mcu& mcu_;
+  std::deque<Timer>& timers_;
 };
 
 }  // namespace board

@@ -8,43 +8,38 @@
 
 namespace board {
 
-Timer::Timer(avr_t& avr, avr_timer_t& stock, Interrupts& interrupts)
-    : avr_(avr),
-      stock_(stock),
+Timer::Timer(Mcu& mcu, const TimerMap& map, Interrupts& interrupts)
+    : mcu_(mcu),
+      map_(map),
       interrupts_(interrupts),
-      number_(static_cast<unsigned>(stock.name - '0')),
-      channels_(stock.comp[AVR_TIMER_COMPC].r_ocr ? 3 : 2),
-      flags_reg_(stock.overflow.raised.reg),
-      mask_reg_(stock.overflow.enable.reg) {
-  const auto hook_value = [this](uint16_t low, uint16_t high) {
-    plain_register(avr_, low);
-    on_write<&Timer::write_low>(avr_, low, *this);
-    if (!high) return;
-    plain_register(avr_, high);
-    on_write<&Timer::write_high>(avr_, high, *this);
+      tccra_(map.tccra),
+      tccrb_(address(1)),
+      tcnt_(address(map.wide ? 4 : 2)),
+      icr_(address(6)),
+      flags_reg_(static_cast<uint16_t>(reg::TIFR0 + map.number)),
+      mask_reg_(static_cast<uint16_t>(reg::TIMSK0 + map.number)) {
+  const auto hook_value = [this](uint16_t low) {
+    on_write<&Timer::write_low>(mcu_, low, *this);
+    if (wide()) on_write<&Timer::write_high>(mcu_, static_cast<uint16_t>(low + 1), *this);
   };
-  for (unsigned channel = 0; channel < channels_; ++channel)
-    hook_value(stock_.comp[channel].r_ocr, stock_.comp[channel].r_ocrh);
-  hook_value(stock_.r_tcnt, stock_.r_tcnth);
-  on_read<&Timer::read_count>(avr_, stock_.r_tcnt, *this);
+  for (unsigned channel = 0; channel < channels(); ++channel) hook_value(ocr(channel));
+  hook_value(tcnt_);
+  on_read<&Timer::read_count>(mcu_, tcnt_, *this);
   if (wide()) {
-    hook_value(stock_.r_icr, stock_.r_icrh);
-    on_read<&Timer::read_count_high>(avr_, stock_.r_tcnth, *this);
+    hook_value(icr_);
+    on_read<&Timer::read_count_high>(mcu_, static_cast<uint16_t>(tcnt_ + 1), *this);
   }
-  for (const avr_regbit_t& bit : {stock_.wgm[0], stock_.cs[0]}) {
-    const auto config = static_cast<uint16_t>(bit.reg);
-    plain_register(avr_, config);
-    on_write<&Timer::write_config>(avr_, config, *this);
-  }
-  plain_register(avr_, flags_reg_);
-  on_write<&Timer::write_flags>(avr_, flags_reg_, *this);
-  on_read<&Timer::read_flags>(avr_, flags_reg_, *this);
-  plain_register(avr_, mask_reg_);
-  on_write<&Timer::write_mask>(avr_, mask_reg_, *this);
+  on_write<&Timer::write_config>(mcu_, tccra_, *this);
+  on_write<&Timer::write_config>(mcu_, tccrb_, *this);
+  on_write<&Timer::write_flags>(mcu_, flags_reg_, *this);
+  on_read<&Timer::read_flags>(mcu_, flags_reg_, *this);
+  on_write<&Timer::write_mask>(mcu_, mask_reg_, *this);
+  for (unsigned event = overflow; event <= channels(); ++event)
+    interrupts_.connect(vector(event), {mask_reg_, bit(event), flags_reg_, bit(event)});
 }
 
 void Timer::reset() {
-  prescaler_origin_ = avr_.cycle;
+  prescaler_origin_ = mcu_.cycle;
   tick_ = 0;
   count_ = 0;
   falling_ = has_run_ = false;
@@ -54,16 +49,12 @@ void Timer::reset() {
 
 // ---- what the registers say ----
 
-uint32_t Timer::register_pair(uint16_t low, uint16_t high) const {
-  return avr_.data[low] | (high ? static_cast<uint32_t>(avr_.data[high]) << 8 : 0u);
-}
-
-uint32_t Timer::compare(unsigned channel) const {
-  return register_pair(stock_.comp[channel].r_ocr, stock_.comp[channel].r_ocrh);
+uint32_t Timer::register_value(uint16_t reg) const {
+  return mcu_.data[reg] | (wide() ? static_cast<uint32_t>(mcu_.data[reg + 1]) << 8 : 0u);
 }
 
 Timer::Mode Timer::mode() const {
-  const unsigned wgm = avr_regbit_get_array(&avr_, stock_.wgm, 4);
+  const unsigned wgm = (mcu_.data[tccra_] & 3u) | (mcu_.data[tccrb_] >> 1 & 0xCu);
   const uint32_t ocra = compare(0);
   if (!wide()) {
     switch (wgm & 7u) {
@@ -75,7 +66,7 @@ Timer::Mode Timer::mode() const {
       default: return {Wave::normal, 0xFF, false};
     }
   }
-  const uint32_t icr = register_pair(stock_.r_icr, stock_.r_icrh);
+  const uint32_t icr = register_value(icr_);
   switch (wgm) {
     case 1: return {Wave::phase_correct, 0xFF, false};
     case 2: return {Wave::phase_correct, 0x1FF, false};
@@ -98,12 +89,8 @@ Timer::Mode Timer::mode() const {
 uint32_t Timer::divider() const {
   static constexpr std::array<uint16_t, 8> common{0, 1, 8, 64, 256, 1024, 0, 0};
   static constexpr std::array<uint16_t, 8> timer2{0, 1, 8, 32, 64, 128, 256, 1024};
-  const unsigned select = avr_.data[stock_.cs[0].reg] & 7u;
-  return number_ == 2 ? timer2[select] : common[select];
-}
-
-avr_int_vector_t& Timer::vector(unsigned event) {
-  return event == overflow ? stock_.overflow : stock_.comp[event - match_a].interrupt;
+  const unsigned select = mcu_.data[tccrb_] & 7u;
+  return number() == 2 ? timer2[select] : common[select];
 }
 
 // ---- counting ----
@@ -170,9 +157,9 @@ void Timer::catch_up(uint64_t cycle) {
   const uint64_t tick = tick_at(cycle);
   if (tick <= tick_) return;
   const uint64_t elapsed = tick - tick_;
-  for (unsigned event = overflow; event <= channels_; ++event) {
+  for (unsigned event = overflow; event <= channels(); ++event) {
     const uint64_t ticks = ticks_until(event);
-    if (ticks && ticks <= elapsed) avr_regbit_set(&avr_, vector(event).raised);
+    if (ticks && ticks <= elapsed) mcu_.data[flags_reg_] |= bit(event);
   }
   advance(elapsed);
   tick_ = tick;
@@ -192,7 +179,7 @@ void Timer::configure(uint64_t cycle) {
 }
 
 void Timer::restart_prescaler() {
-  const uint64_t now = store_ends(avr_);
+  const uint64_t now = store_ends(mcu_);
   catch_up(now);
   prescaler_origin_ = now;
   configure(now);
@@ -201,37 +188,36 @@ void Timer::restart_prescaler() {
 // ---- interrupts ----
 
 void Timer::refresh_interrupts() {
-  const unsigned active = avr_.data[flags_reg_] & avr_.data[mask_reg_];
-  for (unsigned event = overflow; event <= channels_; ++event)
-    interrupts_.set_level(vector(event), active >> vector(event).raised.bit & 1u);
+  const unsigned active = mcu_.data[flags_reg_] & mcu_.data[mask_reg_];
+  for (unsigned event = overflow; event <= channels(); ++event)
+    interrupts_.set_level(vector(event), active & bit(event));
 }
 
 void Timer::schedule_next() {
   uint64_t nearest = 0;
   if (divider_) {
-    for (unsigned event = overflow; event <= channels_; ++event) {
-      if (!avr_regbit_get(&avr_, vector(event).enable)) continue;
+    for (unsigned event = overflow; event <= channels(); ++event) {
+      if (!(mcu_.data[mask_reg_] & bit(event))) continue;
       const uint64_t ticks = ticks_until(event);
       if (ticks && (!nearest || ticks < nearest)) nearest = ticks;
     }
   }
-  if (nearest) schedule<&Timer::on_event>(avr_, prescaler_origin_ + (tick_ + nearest) * divider_, *this);
-  else cancel<&Timer::on_event>(avr_, *this);
+  if (nearest) schedule<&Timer::on_event>(mcu_, prescaler_origin_ + (tick_ + nearest) * divider_, *this);
+  else cancel<&Timer::on_event>(mcu_, *this);
 }
 
-avr_cycle_count_t Timer::on_event(avr_cycle_count_t when) {
+void Timer::on_event(uint64_t when) {
   catch_up(when);
   refresh_interrupts();
   schedule_next();
-  return 0;
 }
 
 // ---- registers ----
 
 void Timer::write_config(uint16_t reg, uint8_t value) {
-  const uint64_t now = store_ends(avr_);
+  const uint64_t now = store_ends(mcu_);
   catch_up(now);
-  avr_.data[reg] = value;
+  mcu_.data[reg] = value;
   configure(now);
 }
 
@@ -239,57 +225,57 @@ void Timer::write_high(uint16_t, uint8_t value) { temporary_ = value; }
 
 // TCNT, ICR and OCR; the high byte of a 16-bit register comes out of TEMP.
 void Timer::write_low(uint16_t reg, uint8_t value) {
-  const uint64_t now = store_ends(avr_);
+  const uint64_t now = store_ends(mcu_);
   catch_up(now);
-  avr_.data[reg] = value;
-  if (wide()) avr_.data[reg + 1] = temporary_;
-  if (reg == stock_.r_tcnt) {
-    count_ = register_pair(stock_.r_tcnt, stock_.r_tcnth);
+  mcu_.data[reg] = value;
+  if (wide()) mcu_.data[reg + 1] = temporary_;
+  if (reg == tcnt_) {
+    count_ = register_value(tcnt_);
     falling_ = false;
   }
   configure(now);
 }
 
 void Timer::write_flags(uint16_t reg, uint8_t value) {
-  catch_up(store_ends(avr_));
-  avr_.data[reg] = static_cast<uint8_t>(avr_.data[reg] & ~bits_written(avr_, value));
+  catch_up(store_ends(mcu_));
+  mcu_.data[reg] = static_cast<uint8_t>(mcu_.data[reg] & ~bits_written(mcu_, value));
   refresh_interrupts();
   schedule_next();
 }
 
 void Timer::write_mask(uint16_t reg, uint8_t value) {
-  catch_up(store_ends(avr_));
-  avr_.data[reg] = value;
+  catch_up(store_ends(mcu_));
+  mcu_.data[reg] = value;
   refresh_interrupts();
   schedule_next();
 }
 
 uint8_t Timer::read_count(uint16_t reg) {
-  catch_up(avr_.cycle);
+  catch_up(mcu_.cycle);
   if (wide()) temporary_ = static_cast<uint8_t>(count_ >> 8);
-  avr_.data[reg] = static_cast<uint8_t>(count_);
-  return avr_.data[reg];
+  mcu_.data[reg] = static_cast<uint8_t>(count_);
+  return mcu_.data[reg];
 }
 
 uint8_t Timer::read_count_high(uint16_t) { return temporary_; }
 
 uint8_t Timer::read_flags(uint16_t reg) {
-  catch_up(avr_.cycle);
-  return avr_.data[reg];
+  catch_up(mcu_.cycle);
+  return mcu_.data[reg];
 }
 
 // ---- output ----
 
 double Timer::duty(unsigned channel) {
-  const avr_timer_comp_t& output = stock_.comp[channel];
-  const uint16_t port = output.com_pin.reg;
-  const unsigned mask = 1u << output.com_pin.bit;
-  if (!(avr_.data[port - 1] & mask)) return 0.0;  // DDR: an input drives nothing
-  const unsigned com = avr_regbit_get(&avr_, output.com);
+  const TimerMap::Pin& pin = map_.pins[channel];
+  const uint16_t pins = port_base(pin.port);
+  const unsigned mask = 1u << pin.bit;
+  if (!(mcu_.data[pins + 1] & mask)) return 0.0;  // DDR: an input drives nothing
+  const unsigned com = mcu_.data[tccra_] >> (6 - 2 * channel) & 3u;
   const Mode now = mode();
   const bool pwm = now.wave == Wave::fast_pwm || now.wave == Wave::phase_correct;
   const bool toggles = com == 1 && (!pwm || (channel == 0 && now.top_is_ocra));
-  if (com == 0 || (com == 1 && !toggles)) return (avr_.data[port] & mask) ? 1.0 : 0.0;
+  if (com == 0 || (com == 1 && !toggles)) return (mcu_.data[pins + 2] & mask) ? 1.0 : 0.0;
   if (!divider_) {  // stopped: the output stays as the last match left it
     const bool high = has_run_ && (count_ < compare(channel)) == (com != 3);
     return high ? 1.0 : 0.0;

@@ -7,17 +7,17 @@
 #include <cstdint>
 
 #include "interrupts.h"
-#include "simavr.h"
+#include "mcu.h"
 
 namespace board {
 
 class Timer {
  public:
-  Timer(avr_t& avr, avr_timer_t& stock, Interrupts& interrupts);
+  Timer(Mcu& mcu, const TimerMap& map, Interrupts& interrupts);
   void reset();
 
-  unsigned number() const { return number_; }
-  unsigned channels() const { return channels_; }
+  unsigned number() const { return map_.number; }
+  unsigned channels() const { return map_.channels; }
   // Mean level of the output-compare pin, 0..1, as the registers command it.
   double duty(unsigned channel);
   // The prescaler's counter was cleared (GTCCR).
@@ -25,6 +25,7 @@ class Timer {
 
  private:
   enum class Wave : uint8_t { normal, clear_on_match, fast_pwm, phase_correct };
+  // Their flags in TIFRn and their bits in TIMSKn are at these places.
   enum Event : unsigned { overflow, match_a, match_b, match_c, event_count };
   struct Mode {
     Wave wave;
@@ -32,13 +33,18 @@ class Timer {
     bool top_is_ocra;
   };
 
-  bool wide() const { return stock_.r_tcnth != 0; }
+  bool wide() const { return map_.wide; }
   uint32_t maximum() const { return wide() ? 0xFFFF : 0xFF; }
-  uint32_t register_pair(uint16_t low, uint16_t high) const;
-  uint32_t compare(unsigned channel) const;
+  static uint8_t bit(unsigned event) { return static_cast<uint8_t>(1u << event); }
+  uint16_t address(unsigned offset) const { return static_cast<uint16_t>(map_.tccra + offset); }
+  uint16_t ocr(unsigned channel) const { return address(wide() ? 8 + 2 * channel : 3 + channel); }
+  uint32_t register_value(uint16_t reg) const;
+  uint32_t compare(unsigned channel) const { return register_value(ocr(channel)); }
   Mode mode() const;
   uint32_t divider() const;
-  avr_int_vector_t& vector(unsigned event);
+  unsigned vector(unsigned event) const {
+    return event == overflow ? map_.match_a + map_.channels : map_.match_a + event - match_a;
+  }
 
   // All of these count in ticks of the prescaled clock.
   uint64_t tick_at(uint64_t cycle) const { return (cycle - prescaler_origin_) / divider_; }
@@ -50,7 +56,7 @@ class Timer {
   void configure(uint64_t cycle);
   void refresh_interrupts();
   void schedule_next();
-  avr_cycle_count_t on_event(avr_cycle_count_t when);
+  void on_event(uint64_t when);
 
   void write_config(uint16_t reg, uint8_t value);
   void write_high(uint16_t reg, uint8_t value);
@@ -61,12 +67,10 @@ class Timer {
   uint8_t read_count_high(uint16_t reg);
   uint8_t read_flags(uint16_t reg);
 
-  avr_t& avr_;
-  avr_timer_t& stock_;  // simavr's own model: register addresses and interrupt vectors are used
+  Mcu& mcu_;
+  const TimerMap& map_;
   Interrupts& interrupts_;
-  unsigned number_;
-  unsigned channels_;
-  uint16_t flags_reg_, mask_reg_;
+  const uint16_t tccra_, tccrb_, tcnt_, icr_, flags_reg_, mask_reg_;  // addresses; of a wide one, of its low byte
 
   Mode mode_{};
   uint32_t divider_ = 0;  // 0: stopped

@@ -9,14 +9,14 @@
 #include <string>
 
 #include "interrupts.h"
-#include "simavr.h"
+#include "mcu.h"
 #include "trace.h"
 
 namespace board {
 
 class Uart {
  public:
-  Uart(avr_t& avr, avr_uart_t& stock, Interrupts& interrupts, Trace& trace);
+  Uart(Mcu& mcu, Interrupts& interrupts, Trace& trace);
   void reset();
 
   // Bytes towards the AVR. They follow each other on the line without a gap, at the baud rate the AVR is set to.
@@ -33,7 +33,6 @@ class Uart {
   double baud() const;
   uint64_t sent() const { return sent_; }
   uint64_t overruns() const { return overruns_; }
-  void refresh_interrupts();
 
  private:
   struct Frame {
@@ -41,27 +40,28 @@ class Uart {
     bool overrun_before = false;
   };
 
-  uint8_t& status() { return avr_.data[reg::UCSR0A]; }
-  uint8_t control() const { return avr_.data[reg::UCSR0B]; }
+  uint8_t& status() { return mcu_.data[reg::UCSR0A]; }
+  uint8_t control() const { return mcu_.data[reg::UCSR0B]; }
   uint64_t bit_cycles() const;
   uint64_t frame_cycles() const;
 
   void start_reception(uint64_t start);
-  avr_cycle_count_t on_start_bit(avr_cycle_count_t when);
-  avr_cycle_count_t on_stop_bit(avr_cycle_count_t when);
-  avr_cycle_count_t on_transmitted(avr_cycle_count_t when);
+  void on_start_bit(uint64_t when);
+  void on_stop_bit(uint64_t when);
+  void on_transmitted(uint64_t when);
   void fill_buffer();
   void flush_receiver();
+  void refresh_interrupts();
 
   void write_status(uint16_t reg, uint8_t value);
   void write_control(uint16_t reg, uint8_t value);
   void write_data(uint16_t reg, uint8_t value);
   uint8_t read_data(uint16_t reg);
 
-  avr_t& avr_;
-  avr_uart_t& stock_;  // simavr's own model: only its interrupt vectors are used
+  Mcu& mcu_;
   Interrupts& interrupts_;
   Trace& trace_;
+  const unsigned rx_vector_, udre_vector_, tx_vector_;
 
   std::deque<uint8_t> line_;  // towards the AVR; the front byte is on the line while receiving_
   bool receiving_ = false;
