@@ -220,7 +220,7 @@ uint64_t Board::call(uint32_t address, uint64_t limit) {
   mcu_.pc = back;
   mcu_.data[reg::SPL] = stack[0];
   mcu_.data[reg::SPH] = stack[1];
-  if (!crashed) mcu_.state = state;
+  if (mcu_.state < Mcu::State::crashed) mcu_.state = state;
   mcu_.set_sreg(sreg);
   if (crashed) throw BoardError("the function at " + hex(address) + " crashed: " + crash_reason());
   if (!returned)

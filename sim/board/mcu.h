@@ -19,7 +19,7 @@ enum : uint8_t { C, Z, N, V, S, H, T, I };
 }
 
 struct Mcu {
-  enum class State : uint8_t { running, asleep, done, crashed, watchdog_reset };
+  enum class State : uint8_t { running, asleep, done, crashed, watchdog_reset };  // done: asleep for good
   struct Register {
     uint8_t (*read)(void* model, uint16_t reg) = nullptr;
     void* reader = nullptr;

@@ -91,6 +91,22 @@ def test_pending_interrupts_are_served_by_vector_number(program: MakeProgram) ->
     assert bytes(program(PRIORITY).finish().u8("order")) == b"ABU"
 
 
+WITHDRAWN = """
+volatile uint8_t steps;
+ISR(EE_READY_vect, ISR_NAKED) { __asm__ volatile("sts steps, r20"); DONE(); }
+int main(void) {
+    UCSR0B = _BV(TXEN0) | _BV(UDRIE0); UCSR0B = REST; EECR = _BV(EERIE);
+    __asm__ volatile("clr r20\\n sei\\n inc r20\\n inc r20\\n inc r20");
+    for (;;);
+}
+"""
+
+
+@pytest.mark.parametrize("rest", ["0", "_BV(TXEN0)"])
+def test_a_request_that_was_withdrawn_does_not_delay_another(program: MakeProgram, rest: str) -> None:
+    assert program(WITHDRAWN.replace("REST", rest)).finish().u8("steps") == [1]
+
+
 SLEEPER = """
 volatile uint16_t ticks;
 ISR(TIMER0_COMPA_vect) { ++ticks; }
