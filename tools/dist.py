@@ -1,7 +1,7 @@
 """Builds source distributions and wheels of both packages: `python -m tools.dist [--out FOLDER] [--python PYTHON ...]`.
 
-Each wheel is built from the source distribution, as a stranger's pip would do it. auditwheel then copies the libraries
-into it that not every Linux has (libsimavr), and names the oldest C library that it runs with.
+Each wheel is built from the source distribution, as a stranger's pip would do it. auditwheel then names
+the oldest C library that it runs with, and would copy libraries into it that not every Linux has.
 """
 
 from __future__ import annotations

@@ -10,6 +10,7 @@ from tools.setup import debian, stamps, venv
 from tools.setup.console import SetupError, say
 
 DEBIAN = (
+    "libsimavr-dev",  # another CPU for the simulated board
     "octave",  # the fuzzy law as others evaluate it
     "octave-fuzzy-logic-toolkit",
     "gcc-arm-none-eabi",  # the controller core on a 32-bit chip

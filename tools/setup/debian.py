@@ -17,8 +17,6 @@ PACKAGES = (
     "avr-libc",
     "arduino-core-avr",
     "avrdude",
-    "libsimavr-dev",  # the simulated board
-    "libelf-dev",
     "g++",  # native extensions
 )
 FOR_CHECKS = (
