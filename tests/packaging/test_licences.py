@@ -1,4 +1,4 @@
-"""Every file has a licence, the GPL stays in the simulated board and the bench, and the texts are where people look for them."""
+"""Every file has a licence, the GPL stays in simulated board and bench, the texts are where people look for them."""
 
 from __future__ import annotations
 
