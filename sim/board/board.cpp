@@ -70,7 +70,7 @@ void Board::write_program(const std::vector<Segment>& segments, const std::strin
   const auto lowest = std::min_element(segments.begin(), segments.end(),
                                        [](const Segment& a, const Segment& b) { return a.address < b.address; });
   boot_start_ = lowest->address;
-  mcu_.reset_pc = boot_start_;
+  mcu_.reset_vector = boot_start_;
   flash_.protect_from(boot_start_);
 }
 
@@ -78,7 +78,7 @@ void Board::erase_flash() {
   std::fill(mcu_.flash.begin(), mcu_.flash.end(), uint8_t{0xFF});
   cpu_.flash_changed(0, chip_.flash_bytes);
   boot_start_ = UINT32_MAX;
-  mcu_.reset_pc = 0;
+  mcu_.reset_vector = 0;
   flash_.protect_from(UINT32_MAX);
 }
 

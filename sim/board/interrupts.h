@@ -61,7 +61,7 @@ class Interrupts {
   Mcu& mcu_;
   Trace& trace_;
   std::array<Slot, vector_count> slots_;
-  std::array<Running, 64> running_;  // the innermost last; deeper ones are not timed
+  std::array<Running, vector_count> running_;  // the innermost last; deeper ones are not timed
   size_t depth_ = 0;
   uint64_t entered_ = 0;
 };

@@ -38,7 +38,7 @@ void Mcu::reset() {
   data[reg::SPL] = static_cast<uint8_t>(chip.ram_end);
   data[reg::SPH] = static_cast<uint8_t>(chip.ram_end >> 8);
   flags.fill(0);
-  pc = reset_pc;
+  pc = reset_vector;
   state = State::running;
   events.clear();
   pending = 0;

@@ -50,9 +50,9 @@ struct Mcu {
 
   const Chip& chip;
   std::vector<uint8_t> data, flash;
-  std::vector<Register> registers;  // from first_register to the RAM; one without a hook is plain memory
-  std::array<uint8_t, 8> flags{};   // of SREG, each in a byte of its own
-  uint32_t pc = 0, reset_pc = 0;    // byte addresses
+  std::vector<Register> registers;    // from first_register to the RAM; one without a hook is plain memory
+  std::array<uint8_t, 8> flags{};     // of SREG, each in a byte of its own
+  uint32_t pc = 0, reset_vector = 0;  // byte addresses
   uint64_t cycle = 0;
   State state = State::running;
   Events events;
