@@ -118,7 +118,7 @@ def test_what_is_not_installed_points_one_way(folder: str, forbidden: str) -> No
         ("os.replace(", "greywhale/base/formats/draft.py"),
         ("os.fsync(", "greywhale/base/formats/draft.py"),
         ("serial.Serial(", "greywhale/protocol/transport.py"),
-        ("subprocess.Popen(", "greywhale/base/processes.py greywhale/board/flash/guard.py"),
+        ("subprocess.Popen(", "greywhale/base/processes.py"),
         ("get_context(", "greywhale/base/study/workers.py"),
         ("matplotlib.", "greywhale/pictures/plotting.py greywhale/pictures/page.py greywhale/reproduce/render/pdf.py"),
     ],

@@ -19,7 +19,7 @@ from greywhale.base.errors import FAILED
 # Where greywhale has what it has on Windows, and other packages what they have here. Locks on a file are this system's,
 # under their name on Windows. Every port that pyserial opens is another program's.
 LIKE_WINDOWS = """
-import asyncio, importlib, mmap, os, select, signal, socket, subprocess, sys, types
+import asyncio, importlib, os, select, signal, socket, subprocess, sys, types
 import serial, serial.tools.list_ports
 import greywhale
 

@@ -1,4 +1,4 @@
-"""The real avrdude writes the real firmware through the real bootloaders; boards with other firmware are told apart."""
+"""The real firmware is written through the real bootloaders; boards with other firmware are told apart."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ Start = Callable[..., BenchProcess]
 
 @pytest.mark.slow
 def test_flash_a_mega_that_an_old_program_fills(start_bench: Start, tmp_path: Path) -> None:
-    """PlatformIO builds and uploads, and avrdude verifies: the image's part behind its gap was erased before."""
+    """PlatformIO builds; the image's part behind its gap is erased before it is written."""
     (tmp_path / "old.hex").write_text(hex_text(bytes(0x20100)))  # what is not erased stays zero
     bench = start_bench("--firmware", str(tmp_path / "old.hex"))
     hello = flash.flash(bench.port, "mega")
@@ -30,7 +30,6 @@ def test_flash_a_mega_that_an_old_program_fills(start_bench: Start, tmp_path: Pa
 
 @pytest.mark.slow
 def test_flash_a_blank_nano(start_bench: Start) -> None:
-    """avrdude writes and verifies a HEX file."""
     bench = start_bench("--blank", board="nano")
     assert bench.command("status")["in_bootloader"]
     hello = flash.flash(bench.port, "nano", hex_file=NANO_IMAGE)
@@ -42,11 +41,11 @@ def test_flash_a_blank_nano(start_bench: Start) -> None:
 @pytest.mark.parametrize(
     ("board", "expected"),
     [
-        ("mega", Bootloader(Dialect("wiring", 115200), b"\x1e\x98\x01")),
-        ("nano", Bootloader(Dialect("arduino", 57600), b"\x1e\x95\x0f")),
+        ("mega", Bootloader(Dialect(2, 115200), b"\x1e\x98\x01")),
+        ("nano", Bootloader(Dialect(1, 57600), b"\x1e\x95\x0f")),
     ],
 )
 def test_the_real_bootloaders_tell_their_board(board: str, expected: Bootloader) -> None:
-    dialects = [Dialect("wiring", 115200), Dialect("arduino", 115200), Dialect("arduino", 57600)]
+    dialects = [Dialect(2, 115200), Dialect(1, 115200), Dialect(1, 57600)]
     with lock_step("--blank", "--board", board) as bench:
         assert find_bootloader(bench.port, dialects, []) == expected

@@ -1,4 +1,4 @@
-"""STK500 as avrdude speaks it, but in simulated time: version 1 for the Nano's bootloader, version 2 for the Mega's."""
+"""STK500 as a host speaks it, but in simulated time: version 1 for the Nano's bootloader, version 2 for the Mega's."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
-"""What a bootloader can do to the simulated flash, and how long it takes. The real avrdude writes and verifies both
-boards through theirs in tests/end_to_end/test_flashing.py.
+"""What a bootloader can do to the simulated flash, and how long it takes. Both boards are flashed through theirs in
+tests/end_to_end/test_flashing.py, and by avrdude in tests/oracles/test_avrdude.py.
 """
 
 from __future__ import annotations

@@ -2,13 +2,28 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import pytest
 
 from greywhale.board import flash
+from greywhale.board.device import Device
 from greywhale.cli.story import story
+from greywhale.protocol.schema import HelloReply
+from greywhale_sim.lockstep import LockStepBench
 from greywhale_sim.words import lock_step
 
 
 def in_this_process(patch: pytest.MonkeyPatch) -> None:
-    patch.setattr(story, "BenchProcess", lock_step)
-    patch.setattr(flash, "find_avrdude", lambda: None)
+    """How the firmware gets onto the board is in tests/end_to_end/test_flashing.py."""
+    patch.setattr(story, "BenchProcess", flashed)
+    patch.setattr(flash, "flash", greet)
+
+
+def flashed(*words: str) -> LockStepBench:
+    return lock_step(*(word for word in words if word != "--blank"))
+
+
+def greet(port: str, *_: Any, **__: Any) -> HelloReply:
+    with Device(port) as device:
+        return device.hello

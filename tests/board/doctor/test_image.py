@@ -11,7 +11,9 @@ import pytest
 
 from greywhale.base.errors import UserError
 from greywhale.board.device import Device
-from greywhale.board.flash.readback import held_blocks, shipped_image
+from greywhale.board.flash.pages import held_blocks
+from greywhale.board.flash.readback import shipped_image
+from greywhale.board.flash.targets import BOARDS
 from greywhale.cli.entry import run
 from greywhale.protocol.schema import State
 from greywhale.protocol.transport import LINES, open_line
@@ -35,7 +37,7 @@ def test_the_image_is_read_back_a_wrong_byte_named_and_the_bootloader_looked_at(
     board: str, verdict: str, says: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     image = shipped_image(board)
-    memory, held = bytearray(image.memory), sum(map(len, held_blocks(image)))
+    memory, held = bytearray(image.memory), sum(map(len, held_blocks(image, BOARDS[board].page)))
     with lock_step("--board", board) as bench:
         code, findings = doctor(bench.port, capsys)
         found = findings["image"]

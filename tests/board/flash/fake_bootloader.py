@@ -6,7 +6,9 @@ The host's patience is counted by the line's own clock, which only reading moves
 from __future__ import annotations
 
 import itertools
-from functools import reduce
+from collections import Counter
+from collections.abc import Callable
+from functools import partial, reduce
 from operator import xor
 from typing import Self
 
@@ -15,19 +17,28 @@ from greywhale.protocol.transport import LINES
 MEGA2560 = b"\x1e\x98\x01"
 ATMEGA328P = b"\x1e\x95\x0f"
 TURN_S = 0.02
+FLASH_BYTES = 1 << 18
+# By the first byte of a question, in either language.
+KINDS = dict.fromkeys(b"\x06U", "seek") | dict.fromkeys(b"\x14t", "read") | dict.fromkeys(b"\x13d", "write")
+KINDS |= dict.fromkeys(b"\x11Q", "leave")
 _numbers = itertools.count()
+# What goes wrong with a question, by its kind and how many of that kind came before: "question" or "answer" gets lost,
+# "garbled" is an answer with a wrong byte, "" nothing. It may also raise what the host then meets with.
+Spoil = Callable[[str, int], str]
 
 
 class FakeBootloader:
     """The other end of a line; `port` is what a host opens, `heard` is the speeds at which it was spoken to."""
 
     restarted = True
+    page: int  # bytes
 
-    def __init__(self, baud: int, signature: bytes, memory: bytes = b"", garble: int = 0) -> None:
-        """`memory` is the program memory; of its first `garble` answers to a read the last byte is wrong."""
-        self.memory, self.garble = memory, garble
-        self.left = False  # whether the host has sent it back to the firmware
-        self.word = 0  # the address that was loaded last
+    def __init__(self, baud: int, signature: bytes, memory: bytes = b"", spoil: Spoil = lambda kind, count: "") -> None:
+        """`memory` is the program memory from its beginning; the rest is erased."""
+        self.memory = bytearray(memory.ljust(FLASH_BYTES, b"\xff"))
+        self.spoil = spoil
+        self.asked: Counter[str] = Counter()  # kinds of questions: seek, read, write, leave, other
+        self.address = 0  # that was loaded last
         self.signature = signature
         self.port = f"bootloader {next(_numbers)}"
         self.heard: set[int] = set()
@@ -36,18 +47,34 @@ class FakeBootloader:
         self._buffer = self._said = b""
         self._now = 0.0
 
+    @property
+    def left(self) -> bool:
+        """Whether the host has sent it back to the firmware."""
+        return self.asked["leave"] > 0
+
     def content(self, count: int) -> bytes:
         """So many bytes from the address on that was loaded last."""
-        start = 2 * self.word
-        self.word += count // 2
-        return self.memory[start : start + count].ljust(count, b"\xff")
+        start = self.address
+        self.address += count
+        return bytes(self.memory[start : self.address])
 
-    def garbled(self, answer: bytes) -> bytes:
-        """An answer to a read, the first ones with a wrong byte."""
-        if self.garble == 0:
-            return answer
-        self.garble -= 1
-        return answer[:-1] + bytes([answer[-1] ^ 0xFF])
+    def program(self, erased: int, content: bytes) -> None:
+        """Erase a page, then clear the bits of memory that are clear in what is written."""
+        self.memory[erased : erased + self.page] = b"\xff" * self.page
+        for byte in content:
+            self.memory[self.address] &= byte
+            self.address += 1
+
+    def heed(self, kind: str, reply: Callable[[], bytes]) -> bytes:
+        """The answer to a question, as it arrives."""
+        wrong = self.spoil(kind, self.asked[kind])
+        self.asked[kind] += 1
+        if wrong == "question":
+            return b""
+        answer = reply()
+        if wrong == "garbled":
+            return answer[:-1] + bytes([answer[-1] ^ 0xFF])
+        return b"" if wrong == "answer" else answer
 
     def answer(self, data: bytes) -> tuple[bytes, bytes]:
         """What to say to `data`, and what of it is kept until more comes."""
@@ -92,29 +119,41 @@ class FakeBootloader:
 class Version1(FakeBootloader):
     """The Nano's: commands of one letter and a space."""
 
+    page = 128
+
     def answer(self, data: bytes) -> tuple[bytes, bytes]:
         said = b""
-        while len(data) >= 2:
-            length = {b"U": 4, b"t": 5}.get(data[:1], 2)
+        while len(data) >= 3 or (len(data) == 2 and data[:1] not in b"Utd"):
+            more = int.from_bytes(data[1:3], "big") if data[:1] == b"d" else 0
+            length = {b"U": 4, b"t": 5, b"d": 5 + more}.get(data[:1], 2)
             if len(data) < length:
                 break
             command, data = data[:length], data[length:]
-            said += self._say(command)
+            said += self.heed(KINDS.get(command[0], "other"), partial(self._reply, command))
         return said, data
 
-    def _say(self, command: bytes) -> bytes:
+    def _reply(self, command: bytes) -> bytes:
+        said = {b"u ": self.signature, b"0 ": b"", b"Q ": b""}.get(command)
         if command[:1] == b"U":
-            self.word = int.from_bytes(command[1:3], "little")
-            return b"\x14\x10"
-        if command[:1] == b"t":
-            return self.garbled(b"\x14" + self.content(int.from_bytes(command[1:3], "big")) + b"\x10")
-        self.left = self.left or command == b"Q "
-        known = {b"0 ": b"\x14\x10", b"u ": b"\x14" + self.signature + b"\x10", b"Q ": b"\x14\x10"}
-        return known.get(command, b"")
+            self.address, said = 2 * int.from_bytes(command[1:3], "little"), b""
+        elif command[:1] == b"t":
+            said = self.content(int.from_bytes(command[1:3], "big"))
+        elif command[:1] == b"d":
+            assert command[3:4] + command[-1:] == b"F ", "flash, not EEPROM"
+            self.program(self.address, command[4:-1])
+            said = b""
+        return b"" if said is None else b"\x14" + said + b"\x10"
 
 
 class Version2(FakeBootloader):
-    """The Mega's: framed messages; everything else is skipped."""
+    """The Mega's: framed messages; everything else is skipped. An older one, which counts them."""
+
+    page = 256
+    _erase_at = _next = 0
+
+    def open(self, restart: bool, baud: int) -> Self:
+        self._erase_at = self._next = 0
+        return super().open(restart, baud)
 
     def answer(self, data: bytes) -> tuple[bytes, bytes]:
         said = b""
@@ -125,22 +164,30 @@ class Version2(FakeBootloader):
                 return said, data
             message, data = data[:end], data[end:]
             assert reduce(xor, message) == 0
-            said += self._reply(message[1], message[5:-1])
+            said += self.heed(KINDS.get(message[5], "other"), partial(self._frame, message))
         return said, b""
 
-    def _reply(self, sequence: int, body: bytes) -> bytes:
+    def _frame(self, message: bytes) -> bytes:
+        sequence = message[1]
+        if sequence not in (1, self._next):
+            return b""
+        self._next = (sequence + 1) % 256
+        answer = self._reply(message[5:-1])
+        framed = bytes([0x1B, sequence]) + len(answer).to_bytes(2, "big") + b"\x0e" + answer
+        return framed + bytes([reduce(xor, framed)])
+
+    def _reply(self, body: bytes) -> bytes:
         if body == b"\x01":
-            answer = b"\x01\x00\x08AVRISP_2"
-        elif body[:1] == b"\x06":
-            self.word = int.from_bytes(body[1:5], "big")
-            answer = b"\x06\x00"
+            return b"\x01\x00\x08AVRISP_2"
+        if body[:1] == b"\x06":
+            self.address = 2 * int.from_bytes(body[1:5], "big") % (1 << 32)
         elif body[:1] == b"\x14":
-            answer = b"\x14\x00" + self.content(int.from_bytes(body[1:3], "big")) + b"\x00"
-        elif body[:1] == b"\x11":
-            self.left, answer = True, b"\x11\x00"
-        else:
+            return b"\x14\x00" + self.content(int.from_bytes(body[1:3], "big")) + b"\x00"
+        elif body[:1] == b"\x13":
+            assert len(body) == 10 + int.from_bytes(body[1:3], "big")
+            self.program(self._erase_at, body[10:])
+            self._erase_at += self.page
+        elif body[:1] == b"\x1d":
             assert body[:6] == b"\x1d\x04\x04\x00\x30\x00", "only the signature is read"
-            answer = bytes([0x1D, 0, 0, 0x30, 0, self.signature[body[6]], 0])
-        message = bytes([0x1B, sequence]) + len(answer).to_bytes(2, "big") + b"\x0e" + answer
-        whole = message + bytes([reduce(xor, message)])
-        return self.garbled(whole) if body[:1] == b"\x14" else whole
+            return bytes([0x1D, 0, 0, 0x30, 0, self.signature[body[6]], 0])
+        return body[:1] + b"\x00"

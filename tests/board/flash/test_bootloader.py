@@ -12,8 +12,8 @@ from greywhale.board.flash.bootloader import Bootloader, Dialect, find_bootloade
 from greywhale.board.flash.images import read_image
 from tests.board.flash.fake_bootloader import ATMEGA328P, MEGA2560, FakeBootloader, Version1, Version2
 
-MEGA = Dialect("wiring", 115200)
-NEW_NANO, OLD_NANO = Dialect("arduino", 115200), Dialect("arduino", 57600)
+MEGA = Dialect(2, 115200)
+NEW_NANO, OLD_NANO = Dialect(1, 115200), Dialect(1, 57600)
 
 
 @pytest.mark.parametrize(
@@ -51,7 +51,7 @@ def test_a_board_without_bootloader_is_named() -> None:
 
 
 SHIPPED = Path("/usr/share/arduino/hardware/arduino/avr/bootloaders")
-FOUND = Bootloader(Dialect("arduino", 57600), None)
+FOUND = Bootloader(Dialect(1, 57600), None)
 
 
 @pytest.mark.parametrize(

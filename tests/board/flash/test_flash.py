@@ -1,10 +1,9 @@
-"""Flashing with tools that are scripts: what is run with what, and what people are told. The real tools flash the
-simulated board in the end-to-end tests."""
+"""Flashing a board whose bootloader and firmware are in this process: what is written when, and what people are told.
+Real firmware goes onto the simulated board in the end-to-end tests."""
 
 from __future__ import annotations
 
-import os
-import sys
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -14,9 +13,12 @@ from greywhale.board import meeting
 from greywhale.board.device import Device
 from greywhale.board.flash import flasher as module
 from greywhale.board.flash import images, platformio
-from greywhale.board.flash.bootloader import Bootloader, Dialect
+from greywhale.board.flash.bootloader import find_bootloader
+from greywhale.board.flash.images import read_image
+from greywhale.board.flash.runner import Tool
 from greywhale.board.flash.targets import BOARDS
 from greywhale.protocol import schema
+from greywhale.protocol.transport import BAUD, LINES, Line
 from tests.board.fake_board import FakeBoard
 from tests.board.flash.fake_bootloader import ATMEGA328P, MEGA2560, FakeBootloader, Version1, Version2
 from tests.board.flash.hex_files import write_image
@@ -25,59 +27,64 @@ from tests.board.port_board import PortBoard
 MEGA = BOARDS["mega"]
 
 
-@pytest.fixture
-def told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """The file into which an avrdude that does nothing writes what it was told."""
-    folder = tmp_path / "bin"
-    folder.mkdir()
-    path = folder / "avrdude"
-    path.write_text(
-        f"#!{sys.executable}\nimport sys\nopen({str(tmp_path / 'told')!r}, 'a').write(' '.join(sys.argv[1:]))\n"
-    )
-    path.chmod(0o755)
-    monkeypatch.setenv("PATH", str(folder), prepend=os.pathsep)
-    return tmp_path / "told"
-
-
-@pytest.fixture
+@pytest.fixture(autouse=True)
 def quick_device(monkeypatch: pytest.MonkeyPatch) -> None:
     """A device that does not wait for a bootloader."""
     monkeypatch.setattr(module, "Device", lambda port: Device(port, quiet_s=0.0, patience_s=0.5))
 
 
-def answering(monkeypatch: pytest.MonkeyPatch, programmer: str, baud: int, signature: bytes | None) -> None:
-    """Let this bootloader answer; the board in Python has none."""
-    found = Bootloader(Dialect(programmer, baud), signature)
-    monkeypatch.setattr(module, "find_bootloader", lambda port, likely, others: found)
+def put_before(firmware: FakeBoard, bootloader: FakeBootloader, monkeypatch: pytest.MonkeyPatch) -> str:
+    """The port of a Mega that has this bootloader and this firmware."""
+    start = LINES[firmware.port]
+
+    def open_either(restart: bool, baud: int) -> Line:
+        return start(restart, baud) if baud == BAUD else bootloader.open(restart, baud)
+
+    monkeypatch.setitem(LINES, firmware.port, open_either)
+    return firmware.port
 
 
-def test_a_port_that_is_not_there_or_in_use_stops_before_any_tool(told: Path, tmp_path: Path) -> None:
-    """avrdude would wait for it for ever, or reset a board that runs its motors."""
+@pytest.fixture
+def bootloader() -> Version2:
+    return Version2(115200, MEGA2560)
+
+
+@pytest.fixture
+def port(bootloader: Version2, monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
+    with FakeBoard() as firmware:
+        yield put_before(firmware, bootloader, monkeypatch)
+
+
+def holds(bootloader: FakeBootloader, image: Path) -> bool:
+    content = read_image(image).memory
+    return bootloader.memory[: len(content)] == content
+
+
+def test_a_port_that_is_not_there_or_in_use_is_named(tmp_path: Path) -> None:
     image = write_image(tmp_path / "x.hex")
     with pytest.raises(UserError, match="there is no such port"):
         module.flash(str(tmp_path / "ttyNONE"), "mega", hex_file=image)
     with PortBoard() as board, Device(board.port, 0.0, 0.5), pytest.raises(UserError, match="in use by this program"):
         module.flash(board.port, "mega", hex_file=image)
-    assert not told.exists()
 
 
-@pytest.mark.usefixtures("quick_device")
-def test_nobody_gets_the_port_while_avrdude_has_it(told: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """avrdude locks nothing, and this process has the port closed meanwhile."""
-    image = write_image(tmp_path / "firmware.hex", MEGA.signature)
-    answering(monkeypatch, "wiring", 115200, MEGA2560)
+def test_nobody_gets_the_port_between_two_openings(
+    bootloader: Version2, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     held: list[bool] = []
 
-    def upload(port: str, *_: object) -> None:
-        found = meeting.find(port, 0.0)
+    def look(what: str, fraction: float) -> None:
+        found = meeting.find(board.port, 0.0)
         held.append(found is not None)
         if found is not None:
             found[0].close()
 
-    monkeypatch.setattr(module, "upload_image", upload)
     with PortBoard() as board:
-        module.flash(board.port, "mega", hex_file=image)
-        assert held == [True]
+        monkeypatch.setattr(module, "find_bootloader", lambda port, *likely: find_bootloader(bootloader.port, *likely))
+        monkeypatch.setattr(module, "write_image", lambda *_: None)
+        with bootloader:
+            module.flash(board.port, "mega", hex_file=write_image(tmp_path / "firmware.hex"), report=look)
+        assert set(held) == {True}
         assert meeting.find(board.port, 0.0) is None
 
 
@@ -92,20 +99,23 @@ def test_missing_sources_and_files_are_bad_usage(tmp_path: Path) -> None:
         module.flash("/dev/null", "uno")
 
 
-@pytest.mark.usefixtures("quick_device")
-def test_avrdude_gets_the_boards_own_settings_and_the_firmware_is_greeted(
-    told: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+def test_an_image_is_written_stage_by_stage_and_the_firmware_is_greeted(
+    bootloader: Version2, port: str, tmp_path: Path
 ) -> None:
-    image = write_image(tmp_path / "firmware.hex", MEGA.signature)
-    answering(monkeypatch, "wiring", 115200, MEGA2560)
-    with FakeBoard() as board:
-        hello = module.flash(board.port, "mega", hex_file=image)
-        assert told.read_text() == f"-c wiring -p atmega2560 -P {board.port} -D -U flash:w:{image}:i -b 115200"
+    image, stages = write_image(tmp_path / "firmware.hex", MEGA.signature), list[str]()
+    hello = module.flash(port, "mega", hex_file=image, report=lambda what, fraction: stages.append(what))
     assert hello.board is schema.Board.MEGA2560
+    assert holds(bootloader, image)
+    assert list(dict.fromkeys(stages)) == [
+        "looking for the bootloader",
+        "writing",
+        "verifying",
+        "greeting the firmware",
+    ]
 
 
 @pytest.mark.parametrize(
-    ("bootloader", "named", "words"),
+    ("kind", "named", "words"),
     [
         (Version2, "nano", "of an Arduino Mega 2560 answers, .*--board mega"),
         (Version1, "mega", "of an Arduino Nano .* answers, .*--board nano"),
@@ -113,86 +123,75 @@ def test_avrdude_gets_the_boards_own_settings_and_the_firmware_is_greeted(
     ids=["a Mega", "a Nano"],
 )
 def test_a_board_that_is_named_wrongly_is_recognised_by_its_bootloader(
-    bootloader: type[FakeBootloader], named: str, words: str, told: Path, tmp_path: Path
+    kind: type[FakeBootloader], named: str, words: str, tmp_path: Path
 ) -> None:
     image = write_image(tmp_path / "firmware.hex", BOARDS[named].signature)
-    signature = MEGA2560 if bootloader is Version2 else ATMEGA328P
-    with bootloader(115200, signature) as line, pytest.raises(UserError, match=words) as caught:
+    signature = MEGA2560 if kind is Version2 else ATMEGA328P
+    with kind(115200, signature) as line, pytest.raises(UserError, match=words) as caught:
         module.flash(line.port, named, hex_file=image)
     assert caught.value.exit_code == 2
-    assert not told.exists()
+    assert not line.asked["write"]
 
 
-@pytest.mark.usefixtures("quick_device")
 def test_a_board_that_is_named_wrongly_is_recognised_by_its_port_and_its_firmware(
-    told: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    answering(monkeypatch, "arduino", 57600, None)
-    with FakeBoard() as board, pytest.raises(UserError, match="flashed for nano, .* for Arduino Mega 2560"):
-        module.flash(board.port, "nano", hex_file=write_image(tmp_path / "firmware.hex"))
+    image = write_image(tmp_path / "firmware.hex")
+    with FakeBoard() as firmware, pytest.raises(UserError, match="flashed for nano, .* for Arduino Mega 2560"):
+        module.flash(put_before(firmware, Version1(57600, ATMEGA328P), monkeypatch), "nano", hex_file=image)
     monkeypatch.setattr(module, "board_of", lambda port: "mega")
     with pytest.raises(UserError, match="^/dev/ttyACM0: .*Arduino Mega 2560, not .* an Arduino Nano"):
         module.flash("/dev/ttyACM0", "nano")
 
 
-def test_a_board_that_nobody_names_is_asked_and_gets_no_image_of_the_other(told: Path, tmp_path: Path) -> None:
-    image = write_image(tmp_path / "firmware.hex", ATMEGA328P)
-    with Version2(115200, MEGA2560) as line, pytest.raises(UserError, match="for an Arduino"):
-        module.flash(line.port, hex_file=image)
-    assert not told.exists()
+@pytest.mark.parametrize(
+    ("signature", "size", "words"),
+    [(ATMEGA328P, 600, "for an Arduino Nano"), (None, MEGA.space + 1, "reaches up to byte 253953")],
+    ids=["of the other board", "over the bootloader"],
+)
+def test_a_board_gets_no_image_that_is_not_for_it(
+    bootloader: Version2, port: str, tmp_path: Path, signature: bytes | None, size: int, words: str
+) -> None:
+    image = write_image(tmp_path / "firmware.hex", signature, size)
+    with pytest.raises(UserError, match=words) as caught:
+        module.flash(port, hex_file=image)
+    assert caught.value.exit_code == 2
+    assert not bootloader.asked["write"]
 
 
-def test_a_chip_that_greywhale_does_not_know_is_refused(told: Path, tmp_path: Path) -> None:
+def test_a_chip_that_greywhale_does_not_know_is_refused(tmp_path: Path) -> None:
     # an old Mega (ATmega1280) speaks as a Nano does
     image = write_image(tmp_path / "firmware.hex")
     with Version1(57600, b"\x1e\x97\x03") as line, pytest.raises(UserError, match="the chip has signature 1e9703"):
         module.flash(line.port, "nano", hex_file=image)
-    assert not told.exists()
+    assert not line.asked["write"]
 
 
-@pytest.mark.usefixtures("quick_device")
 def test_an_installed_package_writes_the_image_that_came_with_it(
-    told: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    bootloader: Version2, port: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(platformio, "CHECKOUT", tmp_path / "nowhere")
     monkeypatch.setattr(images, "PACKAGED", tmp_path)
-    answering(monkeypatch, "wiring", 115200, MEGA2560)
-    with FakeBoard() as board:
-        with pytest.raises(UserError, match="no firmware for an Arduino Mega 2560"):
-            module.flash(board.port)
-        image = write_image(tmp_path / "mega.hex", MEGA.signature)
-        module.flash(board.port)
-        assert f"flash:w:{image}:i" in told.read_text()
+    with pytest.raises(UserError, match="no firmware for an Arduino Mega 2560"):
+        module.flash(port)
+    image = write_image(tmp_path / "mega.hex", MEGA.signature)
+    module.flash(port)
+    assert holds(bootloader, image)
 
 
-@pytest.mark.usefixtures("quick_device")
-def test_platformio_builds_first_and_then_uploads(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    commands = commands_of(tmp_path, monkeypatch)
-    (folder := tmp_path / ".pio" / "build" / "megaatmega2560").mkdir(parents=True)
-    write_image(folder / "firmware.hex")
-    answering(monkeypatch, "wiring", 115200, MEGA2560)
-    with FakeBoard() as board:
-        module.flash(board.port, "mega", firmware_dir=tmp_path)
-        port = board.port
-    build = ["run", "--project-dir", str(tmp_path), "--environment", "megaatmega2560"]
-    assert commands == [build, [*build, "--target", "upload", "--upload-port", port]]
+@pytest.mark.parametrize("baud", [115200, 57600])
+def test_platformio_builds_and_does_not_upload(baud: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "platformio.ini").write_text("")
+    (folder := tmp_path / ".pio" / "build" / "nanoatmega328").mkdir(parents=True)
+    bootloader, commands = Version1(baud, ATMEGA328P), list[list[str]]()
 
+    def build(tool: Tool, look: object) -> None:
+        assert not bootloader.asked["write"], "nothing is erased before there is something to write"
+        commands.append(tool.command[3:])
+        write_image(folder / "firmware.hex", ATMEGA328P)
 
-def test_what_platformio_builds_for_a_nano_goes_through_avrdude_at_the_speed_that_was_found(
-    told: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(module, "Device", lambda port: pytest.fail("greeted"))
-    commands = commands_of(tmp_path, monkeypatch)
-    with Version1(57600, ATMEGA328P) as line, pytest.raises(pytest.fail.Exception, match="greeted"):
-        module.flash(line.port, "nano", firmware_dir=tmp_path)
+    monkeypatch.setattr(platformio, "run_tool", build)
+    with FakeBoard() as firmware, pytest.raises(UserError, match="flashed for nano"):
+        module.flash(put_before(firmware, bootloader, monkeypatch), "nano", firmware_dir=tmp_path)
     assert commands == [["run", "--project-dir", str(tmp_path), "--environment", "nanoatmega328"]]
-    built = tmp_path / ".pio" / "build" / "nanoatmega328" / "firmware.hex"
-    assert told.read_text() == f"-c arduino -p atmega328p -P {line.port} -D -U flash:w:{built}:i -b 57600"
-
-
-def commands_of(folder: Path, monkeypatch: pytest.MonkeyPatch) -> list[list[str]]:
-    """What a PlatformIO that does nothing is told where a firmware's sources are."""
-    (folder / "platformio.ini").write_text("")
-    commands: list[list[str]] = []
-    monkeypatch.setattr(platformio, "run_tool", lambda tool, look: commands.append(tool.command[3:]))
-    return commands
+    assert holds(bootloader, folder / "firmware.hex")

@@ -2,48 +2,34 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
 from greywhale.base.errors import UserError
-from greywhale.board.flash.bootloader import Bootloader, Dialect
 from greywhale.board.flash.images import read_image
-from greywhale.board.flash.readback import BLOCK, compare_image, read_flash
+from greywhale.board.flash.readback import compare_image
 from tests.board.flash.fake_bootloader import ATMEGA328P, MEGA2560, FakeBootloader, Version1, Version2
 from tests.board.flash.hex_files import hex_text, write_image
 
-ON_MEGA, ON_NANO = (
-    Bootloader(Dialect("wiring", 115200), MEGA2560),
-    Bootloader(Dialect("arduino", 57600), ATMEGA328P),
+BOTH = pytest.mark.parametrize(
+    ("kind", "baud", "signature"), [(Version2, 115200, MEGA2560), (Version1, 57600, ATMEGA328P)], ids=["mega", "nano"]
 )
-BOTH = pytest.mark.parametrize(("kind", "found"), [(Version2, ON_MEGA), (Version1, ON_NANO)], ids=["mega", "nano"])
-Kind = Callable[..., FakeBootloader]
-MEMORY = bytes((7 * at + at // 256) % 256 for at in range(1001))
 
 
-BLOCKS = [range(at, min(at + BLOCK, len(MEMORY))) for at in range(0, len(MEMORY), BLOCK)]
-
-
-def told(what: str, fraction: float) -> None:
-    assert 0.0 <= fraction <= 1.0
+def garble(asked: str, count: int) -> str:
+    return "garbled" if asked == "read" and count < 2 else ""
 
 
 @BOTH
-def test_every_byte_is_read_and_the_firmware_started_again(kind: Kind, found: Bootloader) -> None:
-    with kind(found.dialect.baud, found.signature, MEMORY, garble=2) as board:
-        assert read_flash(board.port, found, BLOCKS, told) == MEMORY
-        assert board.left
-
-
-@BOTH
-def test_the_first_byte_that_differs_is_told(kind: Kind, found: Bootloader, tmp_path: Path) -> None:
-    baud, signature = found.dialect.baud, found.signature
+def test_the_first_byte_that_differs_is_told_and_the_firmware_started_again(
+    kind: type[FakeBootloader], baud: int, signature: bytes, tmp_path: Path
+) -> None:
     path = write_image(tmp_path / "image.hex", signature)
     memory = bytearray(read_image(path).memory)
-    with kind(baud, signature, bytes(memory)) as board:
+    with kind(baud, signature, bytes(memory), garble) as board:
         assert compare_image(board.port, path)[0].same
+        assert board.left
     memory[0x123] ^= 0x40
     memory[0x200] ^= 0x01
     with kind(baud, signature, bytes(memory)) as board:
@@ -59,9 +45,13 @@ def test_what_an_image_leaves_out_is_not_read(tmp_path: Path) -> None:
     path.write_text(hex_text(bytes(100)).rsplit(":", 1)[0] + hex_text(b"far", start=0x20000))
     with Version2(115200, MEGA2560, bytes(0x20000) + b"fat") as board:
         found, _ = compare_image(board.port, path)
-    assert (found.compared, found.differing, found.first) == (BLOCK + 3, 29, 100)
+    assert (found.compared, found.differing, found.first) == (Version2.page + 3, Version2.page - 100 + 1, 100)
 
 
-def test_a_bootloader_that_answers_wrongly_again_and_again_is_named() -> None:
-    with Version2(115200, MEGA2560, MEMORY, garble=99) as board, pytest.raises(UserError, match="at address 0x0"):
-        read_flash(board.port, ON_MEGA, BLOCKS, told)
+def test_a_bootloader_that_answers_wrongly_again_and_again_is_named(tmp_path: Path) -> None:
+    path = write_image(tmp_path / "image.hex")
+    with (
+        Version2(115200, MEGA2560, spoil=lambda asked, count: "garbled" if asked == "read" else "") as board,
+        pytest.raises(UserError, match="stopped answering at address 0x0; check the cable and try again"),
+    ):
+        compare_image(board.port, path)

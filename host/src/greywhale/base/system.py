@@ -24,7 +24,6 @@ from typing import TextIO
 
 if sys.platform == "win32":
     import _thread
-    import mmap
     import msvcrt
     import subprocess
 else:
@@ -77,18 +76,6 @@ def lock(descriptor: int, wait: bool = False) -> None:
             os.lseek(descriptor, place, os.SEEK_SET)
     else:
         fcntl.flock(descriptor, fcntl.LOCK_EX | (0 if wait else fcntl.LOCK_NB))
-
-
-def read_all(descriptor: int) -> bytes:
-    """All that a file holds; the place where another process writes into it stays."""
-    size = os.fstat(descriptor).st_size
-    if sys.platform == "win32":
-        if size == 0:
-            return b""  # cannot be mapped
-        with mmap.mmap(descriptor, size, access=mmap.ACCESS_READ) as held:
-            return held[:]
-    else:
-        return os.pread(descriptor, size, 0)
 
 
 @contextlib.contextmanager

@@ -44,10 +44,9 @@ def command(
 ) -> None:
     """The whole story on the simulated bench in one go, pictures at the end.
 
-    Flashes the real firmware onto a simulated Arduino (if avrdude is installed; else the board comes with it) and lets
-    the arm follow a leader with untuned controllers. Then it records practice motions, identifies the arm from them,
-    tunes on the identified model, uploads the result, and lets the arm follow the same leader again. Neither
-    identification nor tuning sees that motion or the arm's data.
+    Flashes the real firmware onto a simulated Arduino and lets the arm follow a leader with untuned controllers. Then
+    it records practice motions, identifies the arm from them, tunes on the identified model, uploads the result, and
+    lets the arm follow the same leader again. Neither identification nor tuning sees that motion or the arm's data.
     """
     require_folder(out, "logs and pictures")
     _check_inputs(leader, arm, controller)

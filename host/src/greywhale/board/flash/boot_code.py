@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from greywhale.board.flash.bootloader import Bootloader
+from greywhale.board.flash.images import ERASED
 
 # `in Rd, MCUSR`, for any Rd. The register that holds the cause has the same address in both chips.
 _READS_CAUSE, _ANY_REGISTER = 0xB604, 0x01F0
@@ -26,5 +27,5 @@ def look_at_boot_code(found: Bootloader, code: bytes) -> BootCode:
     """`code` is the section that the bootloader may fill, from an even address on."""
     words = (int.from_bytes(code[at : at + 2], "little") for at in range(0, len(code), 2))
     reads_cause = any(word & ~_ANY_REGISTER == _READS_CAUSE for word in words)
-    protocol = {"arduino": "STK500 version 1", "wiring": "STK500 version 2"}[found.dialect.programmer]
-    return BootCode(f"{protocol} at {found.dialect.baud} baud", reads_cause if code.strip(b"\xff") else None)
+    title = f"STK500 version {found.dialect.version} at {found.dialect.baud} baud"
+    return BootCode(title, reads_cause if code.strip(ERASED) else None)

@@ -11,15 +11,13 @@ from greywhale.base.errors import BadUsage, UserError
 from greywhale.base.types import Progress, show_no_progress
 from greywhale.board.device import Device
 from greywhale.board.flash import platformio
-from greywhale.board.flash.avrdude import need_avrdude, upload_image
 from greywhale.board.flash.bootloader import Bootloader, Dialect, find_bootloader
 from greywhale.board.flash.images import Image, check_image, packaged_image, read_image
-from greywhale.board.flash.late_pages import erase_late_pages
+from greywhale.board.flash.pages import write_image
 from greywhale.board.flash.targets import BOARDS, FlashBoard
 from greywhale.board.session import Session
 from greywhale.protocol import schema
 from greywhale.protocol.ports import board_of
-from greywhale.protocol.transport import open_line
 
 
 def flash(
@@ -37,17 +35,15 @@ def flash(
     expected = _expected_board(port, board)
     image = None if hex_file is None else read_image(Path(hex_file))
     sources = platformio.find_sources(firmware_dir) if image is None else None
-    if sources is None:
-        need_avrdude()
     with Session.of(port):  # also while this process has the port closed
-        # avrdude waits for ever for a port that is not there, and breaks into one that is in use.
-        open_line(port).close()
         report("looking for the bootloader", 0.0)
         name, found = find_board(port, expected)
-        if sources is not None:
-            _build_and_upload(port, BOARDS[name], found, sources, report)
-        else:
-            _upload(port, BOARDS[name], found, image or _packaged(name), report)
+        target = BOARDS[name]
+        if sources is not None:  # nothing is erased before there is something to write
+            image = read_image(platformio.build(sources, target, report))
+        image = image or _packaged(name)
+        check_image(image, target, port)
+        write_image(port, found.dialect, image, target.page, report)
         report("greeting the firmware", 0.0)
         return _greet(port, name)
 
@@ -81,35 +77,17 @@ def find_board(port: str, expected: str | None) -> tuple[str, Bootloader]:
 
 
 def _dialects(board: FlashBoard) -> list[Dialect]:
-    return [Dialect(board.programmer, baud) for baud in board.bauds]
+    return [Dialect(board.version, baud) for baud in board.bauds]
 
 
 def _name_of(port: str, found: Bootloader) -> str:
     """The board by its chip, or by the way it speaks where it does not tell its chip."""
     for name, board in BOARDS.items():
-        if found.signature == board.signature or (
-            found.signature is None and found.dialect.programmer == board.programmer
-        ):
+        if found.signature == board.signature or (found.signature is None and found.dialect.version == board.version):
             return name
     assert found.signature is not None
     known = " and ".join(f"{board.title} ({board.signature.hex()})" for board in BOARDS.values())
     raise UserError(f"{port}: the chip has signature {found.signature.hex()}; greywhale runs on {known} only.")
-
-
-def _build_and_upload(port: str, board: FlashBoard, found: Bootloader, sources: Path, report: Progress) -> None:
-    # Built first and on its own: nothing is erased before there is something to write.
-    built = platformio.build(sources, board, report)
-    if len(board.bauds) == 1:
-        erase_late_pages(port, found, read_image(built), report)
-        platformio.upload(sources, board, port, report)
-    else:  # PlatformIO knows one speed a board
-        upload_image(port, board, found.dialect.baud, built, report)
-
-
-def _upload(port: str, board: FlashBoard, found: Bootloader, image: Image, report: Progress) -> None:
-    check_image(image, board, port)
-    erase_late_pages(port, found, image, report)
-    upload_image(port, board, found.dialect.baud, image.path, report)
 
 
 def _packaged(name: str) -> Image:

@@ -19,6 +19,7 @@ _MAGIC = b"greywhale image\0"
 _RECORD = struct.Struct("<16sB3s3BI17s")
 _LAYOUT = 1
 _LARGEST = 1 << 20  # bytes; no board has as much
+ERASED = b"\xff"  # a byte of memory
 
 # Types of Intel HEX records.
 _DATA, _END, _SEGMENT, _LINEAR = 0, 1, 2, 4
@@ -41,7 +42,10 @@ class Image:
     path: Path
     end: int
     record: Record | None
-    memory: bytes = field(repr=False)  # from address 0 to `end`; what the file leaves out is erased memory, 0xff
+    memory: bytes = field(repr=False)  # from address 0 to `end`; what the file leaves out is erased memory
+
+    def content(self, block: range) -> bytes:
+        return self.memory[block.start : block.stop]
 
 
 def packaged_image(board: str) -> Path | None:
@@ -54,7 +58,7 @@ def read_image(path: Path) -> Image:
     memory = bytearray()
     for address, data in read_pieces(path):
         end = address + len(data)
-        memory.extend(b"\xff" * (end - len(memory)))
+        memory.extend(ERASED * (end - len(memory)))
         memory[address:end] = data
     return Image(path, len(memory), _find_record(memory), bytes(memory))
 

@@ -1,4 +1,4 @@
-"""Builds the firmware from its source tree with PlatformIO, and uploads what was built."""
+"""Builds the firmware from its source tree with PlatformIO."""
 
 from __future__ import annotations
 
@@ -10,7 +10,6 @@ from pathlib import Path
 
 from greywhale.base.errors import BadUsage, UserError
 from greywhale.base.types import Progress
-from greywhale.board.flash.avrdude import UPLOAD_LIMIT_S, watch_upload
 from greywhale.board.flash.runner import Tool, run_tool
 from greywhale.board.flash.targets import FlashBoard
 
@@ -33,8 +32,10 @@ def find_sources(named: str | Path | None) -> Path | None:
 def build(firmware: Path, board: FlashBoard, report: Progress) -> Path:
     """Build for the board; the HEX file."""
     environment = platformio_environment(firmware)
-    tool = Tool("PlatformIO's build", _run_command(firmware, board), environment, _BUILD_LIMIT_S, folder=firmware)
-    run_tool(tool, lambda text: report("building", 0.0))
+    # In the firmware's folder: PlatformIO also obeys a platformio.ini of the folder that it runs in.
+    command = [*_platformio(), "run", "--project-dir", str(firmware.resolve()), "--environment", board.environment]
+    tool = Tool("PlatformIO's build", command, environment, firmware, _BUILD_LIMIT_S)
+    run_tool(tool, lambda: report("building", 0.0))
     return _build_folder(firmware, environment) / board.environment / "firmware.hex"
 
 
@@ -42,14 +43,6 @@ def last_build(firmware: Path, board: FlashBoard) -> Path | None:
     """The HEX file that was built last for the board; None where there is none."""
     built = _build_folder(firmware, platformio_environment(firmware)) / board.environment / "firmware.hex"
     return built if built.is_file() else None
-
-
-def upload(firmware: Path, board: FlashBoard, port: str, report: Progress) -> None:
-    """Upload what was built, at the speed that PlatformIO knows for the board."""
-    port = os.path.abspath(port) if os.path.exists(port) else port  # a port of Windows has no path
-    command = [*_run_command(firmware, board), "--target", "upload", "--upload-port", port]
-    tool = Tool("the upload", command, platformio_environment(firmware), UPLOAD_LIMIT_S, port, folder=firmware)
-    run_tool(tool, watch_upload(port, report))
 
 
 def platformio_environment(firmware: Path) -> dict[str, str]:
@@ -62,11 +55,6 @@ def platformio_environment(firmware: Path) -> dict[str, str]:
     if (core / "assembled").exists():
         environment["PLATFORMIO_CORE_DIR"] = str(core)
     return environment
-
-
-def _run_command(firmware: Path, board: FlashBoard) -> list[str]:
-    """For a run in the firmware's folder: PlatformIO also obeys a platformio.ini of the folder that it runs in."""
-    return [*_platformio(), "run", "--project-dir", str(firmware.resolve()), "--environment", board.environment]
 
 
 def _platformio() -> list[str]:

@@ -9,15 +9,15 @@ from greywhale.protocol import schema
 
 @dataclass(frozen=True)
 class FlashBoard:
-    """PlatformIO's environment, avrdude's part and programmer, the speeds of the bootloader; the chip's signature, and
-    the bytes of flash that the bootloader leaves, and where its own end.
+    """PlatformIO's environment, the version of STK500 that the bootloader speaks, and its speeds; the chip's signature,
+    the bytes of a page, and of all flash that the bootloader leaves, and where its own end.
     """
 
     environment: str
-    part: str
-    programmer: str
+    version: int
     bauds: tuple[int, ...]
     signature: bytes
+    page: int
     space: int
     flash: int
     identity: schema.Board
@@ -31,20 +31,20 @@ class FlashBoard:
 BOARDS = {
     "mega": FlashBoard(
         environment="megaatmega2560",
-        part="atmega2560",
-        programmer="wiring",
+        version=2,
         bauds=(115200,),
         signature=b"\x1e\x98\x01",
+        page=256,
         space=253952,
         flash=262144,
         identity=schema.Board.MEGA2560,
     ),
     "nano": FlashBoard(
         environment="nanoatmega328",
-        part="atmega328p",
-        programmer="arduino",
+        version=1,
         bauds=(115200, 57600),
         signature=b"\x1e\x95\x0f",
+        page=128,
         space=30720,
         flash=32768,
         identity=schema.Board.NANO328,

@@ -31,7 +31,7 @@ from greywhale.files.paper_tables import paper_table
 from greywhale.files.trajectory import Trajectory
 from greywhale.motion import evaluate, human_reaches
 from greywhale.pictures.follow import draw_following, trace
-from greywhale.protocol.schema import Board, HelloReply
+from greywhale.protocol.schema import Board
 from greywhale.protocol.table import ParameterTable
 
 SHORTEST_S, LONGEST_S = 4.0, 600.0  # of generated motions
@@ -69,7 +69,7 @@ def run(options: DemoOptions, report: NotedProgress = show_no_progress) -> DemoR
         save_leader(leader, motion)
     report("starting the bench", 0.0)
     with BenchProcess(*_bench_options(options)) as bench:
-        hello = _put_firmware_on(bench, options, report)
+        hello = flash.flash(bench.port, options.board, report=report)
         stage = _Stage(bench, options, arm, report)
         runs = [stage.follow(leader, "before", "before tuning", paper_table(UNTUNED))]
         learnt = None if options.controller is not None else stage.learn()
@@ -182,16 +182,6 @@ def _draw(options: DemoOptions, runs: list[Run], supply_v: float) -> Path:
     return picture
 
 
-def _put_firmware_on(bench: RunningBench, options: DemoOptions, report: NotedProgress) -> HelloReply:
-    """Flash the board, as with a real one; its greeting."""
-    if flash.find_avrdude() is not None:
-        return flash.flash(bench.port, options.board, report=report)
-    report("avrdude is not installed: the board comes with its firmware", 0.0)
-    with Device(bench.port) as device:
-        return device.hello
-
-
 def _bench_options(options: DemoOptions) -> list[str]:
     arm = [] if options.arm is None else ["--arm", str(options.arm)]
-    blank = [] if flash.find_avrdude() is None else ["--blank"]
-    return ["--board", options.board, *blank, "--speed", options.speed, "--seed", str(options.seed), *arm]
+    return ["--board", options.board, "--blank", "--speed", options.speed, "--seed", str(options.seed), *arm]
