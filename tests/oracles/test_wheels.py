@@ -6,7 +6,6 @@ The wheels are built from the source distributions, as a stranger's pip would do
 from __future__ import annotations
 
 import json
-import os
 import shutil
 import subprocess
 import sys
@@ -30,10 +29,9 @@ pytestmark = pytest.mark.timeout(1200)  # of which building the extensions takes
 
 @dataclass(frozen=True)
 class Installation:
-    """An environment with greywhale in it, away from everything else; `tools` is all that is on the PATH besides."""
+    """An environment with greywhale in it, away from everything else: no other program is on the PATH."""
 
     folder: Path
-    tools: Path
 
     @property
     def package(self) -> Path:
@@ -42,7 +40,7 @@ class Installation:
 
     def run(self, *command: str, cwd: Path | None = None) -> subprocess.CompletedProcess[str]:
         """Run a program of the environment."""
-        environment = {"PATH": f"{self.folder / 'bin'}{os.pathsep}{self.tools}", "HOME": str(self.folder)}
+        environment = {"PATH": str(self.folder / "bin"), "HOME": str(self.folder)}
         program = str(self.folder / "bin" / command[0])
         return subprocess.run(
             [program, *command[1:]],
@@ -75,18 +73,12 @@ def wheels(built: list[Path]) -> tuple[Path, Path]:
 
 
 def install(folder: Path, *wheels: Path) -> Installation:
-    """A new environment with these wheels and what they depend on; avrdude is the only other program."""
+    """A new environment with these wheels and what they depend on."""
     python_venv.create(folder / "env")
     pip = [sys.executable, "-m", "pip", "--python", folder / "env/bin/python", "--disable-pip-version-check"]
     offline = ["--no-index", "--find-links", WHEELHOUSE, "--no-compile"]  # a module is compiled when it is imported
     subprocess.run([*pip, "install", "--quiet", *offline, *wheels], check=True)
-    avrdude = shutil.which("avrdude")
-    assert avrdude is not None
-    tools = folder / "tools"
-    tools.mkdir()
-    (tools / "avrdude").write_text(f'#!/bin/sh\n: > "{tools}/used"\nexec {avrdude} "$@"\n')
-    (tools / "avrdude").chmod(0o755)
-    return Installation(folder / "env", tools)
+    return Installation(folder / "env")
 
 
 @pytest.fixture(scope="session")
@@ -193,12 +185,11 @@ def test_the_package_itself_runs_and_not_the_checkout(alone: Installation) -> No
     assert Path(package).parent == Path(native).parent == alone.package
     assert alone.run("greywhale", "--version").stdout == f"greywhale, version {version}\n"
     assert alone.run("python", "-c", "import platformio").returncode == 1
-    assert not any((alone.tools / name).exists() for name in ("cc", "gcc", "g++", "c++", "avr-gcc", "pio"))
 
 
 @pytest.mark.parametrize("board", BOARDS)
 def test_a_board_is_flashed_tuned_and_recorded(alone: Installation, board: str, tmp_path: Path) -> None:
-    """The board is simulated by the checkout, in a process of its own; the real avrdude writes the packaged image."""
+    """The board is simulated by the checkout, in a process of its own."""
     with BenchProcess("--board", board, "--blank", "--speed", "max") as bench:
         version = alone.run("greywhale", "--version").stdout.split()[-1]
         flashed = alone.ask("flash", "--port", bench.port)
@@ -214,10 +205,8 @@ def test_a_board_is_flashed_tuned_and_recorded(alone: Installation, board: str, 
 
 def test_the_demo_runs_in_an_empty_environment(with_bench: Installation, tmp_path: Path) -> None:
     """It flashes its board."""
-    (with_bench.tools / "used").unlink(missing_ok=True)
     table = with_bench.package / "data" / "fuzzy_tables" / "table_8.toml"
     out = tmp_path / "out"
     facts = with_bench.ask("demo", "--duration", "4", "--controller", str(table), "--out", str(out))
     assert facts["board"] == "mega2560"
-    assert (with_bench.tools / "used").exists()
     assert (out / "following.png").stat().st_size > 10_000

@@ -11,6 +11,7 @@ from tools.setup.console import SetupError, say
 
 DEBIAN = (
     "libsimavr-dev",  # another CPU for the simulated board
+    "avrdude",  # the flasher that others use
     "octave",  # the fuzzy law as others evaluate it
     "octave-fuzzy-logic-toolkit",
     "gcc-arm-none-eabi",  # the controller core on a 32-bit chip

@@ -12,11 +12,10 @@ from pathlib import Path
 from tools.setup.console import SetupError, run, say
 
 PACKAGES = (
-    "gcc-avr",  # the firmware: compiler, C library, Arduino core, upload
+    "gcc-avr",  # the firmware: compiler, C library, Arduino core
     "binutils-avr",
     "avr-libc",
     "arduino-core-avr",
-    "avrdude",
     "g++",  # native extensions
 )
 FOR_CHECKS = (

@@ -1,7 +1,8 @@
 """Assembles a PlatformIO core folder from Debian's packages, for where PlatformIO's own registry cannot be reached.
 
 `python -m tools.setup.offline_core FOLDER`, with the Python that has PlatformIO. An ordinary platformio.ini then
-builds, tests and uploads with PLATFORMIO_CORE_DIR=FOLDER. The folder is made anew each time.
+builds and tests with PLATFORMIO_CORE_DIR=FOLDER, and uploads where an avrdude is on the PATH. The folder is made anew
+each time.
 """
 
 from __future__ import annotations
@@ -112,7 +113,6 @@ def add_tools(core: Path) -> None:
     framework = new_tool(core, "framework-arduino-avr", "5.1.0")
     for part in ("cores", "variants", "libraries"):
         link(ARDUINO / part, framework / part)
-    link(Path("/usr/bin/avrdude"), new_tool(core, "tool-avrdude", "1.70100.0") / "bin/avrdude")
 
 
 def new_platform(core: Path, name: str, main_script: str, **fields: object) -> Path:
@@ -137,7 +137,6 @@ def add_platforms(core: Path) -> None:
             "version": "*",
             "optional": True,
         },
-        "tool-avrdude": {"type": "uploader", "owner": "platformio", "version": "*", "optional": True},
     }
     frameworks = {"arduino": {"package": "framework-arduino-avr", "script": "builder/arduino.py"}}
     folder = new_platform(core, "atmelavr", "avr_main.py", packages=packages, frameworks=frameworks)
