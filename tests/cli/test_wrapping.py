@@ -30,13 +30,13 @@ def test_words_stay_whole_and_none_is_lost(text: str, width: int, hang: int) -> 
 
 
 def test_a_command_is_copied_from_one_line_where_one_can_hold_it() -> None:
-    text = "it is not installed; install it (Debian: `sudo apt-get install avrdude`) and try again."
+    text = "it is not installed; install it (Debian: `sudo apt-get install python3`) and try again."
     assert wrap(text, 40).split("\n") == [
         "it is not installed; install it (Debian:",
-        "`sudo apt-get install avrdude`) and try",
+        "`sudo apt-get install python3`) and try",
         "again.",
     ]
-    assert wrap(text, 20).split("\n")[2:4] == ["`sudo apt-get", "install avrdude`)"]
+    assert wrap(text, 20).split("\n")[2:4] == ["`sudo apt-get", "install python3`)"]
 
 
 def seen_on(width: int, monkeypatch: pytest.MonkeyPatch, stream: str, arguments: list[str]) -> str:

@@ -7,15 +7,17 @@ from pathlib import Path
 
 import pytest
 
+from greywhale.base.errors import UserError
 from greywhale.board import flash
 from greywhale.board.flash.bootloader import Bootloader, Dialect, find_bootloader
+from greywhale.board.flash.images import read_image
 from greywhale.cli.story import BenchProcess
 from greywhale.protocol import schema
 from greywhale_sim.assemble import BUILDS
 from greywhale_sim.words import lock_step
 from tests.board.flash.hex_files import hex_text
 
-NANO_IMAGE = BUILDS / "nanoatmega328" / "firmware.hex"
+IMAGES = {name: BUILDS / board.environment / "firmware.hex" for name, board in flash.BOARDS.items()}
 Start = Callable[..., BenchProcess]
 
 
@@ -32,9 +34,39 @@ def test_flash_a_mega_that_an_old_program_fills(start_bench: Start, tmp_path: Pa
 def test_flash_a_blank_nano(start_bench: Start) -> None:
     bench = start_bench("--blank", board="nano")
     assert bench.command("status")["in_bootloader"]
-    hello = flash.flash(bench.port, "nano", hex_file=NANO_IMAGE)
+    hello = flash.flash(bench.port, "nano", hex_file=IMAGES["nano"])
     assert (hello.schema_hash, hello.board) == (schema.SCHEMA_HASH, schema.Board.NANO328)
     assert not bench.command("status")["in_bootloader"]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("board", IMAGES)
+def test_a_flash_that_was_interrupted_is_repeated(board: str) -> None:
+    image = read_image(IMAGES[board]).memory
+
+    def interrupt(what: str, fraction: float) -> None:
+        if what == "writing" and fraction > 0.5:
+            raise KeyboardInterrupt
+
+    with lock_step("--blank", "--board", board) as bench:
+        with pytest.raises(KeyboardInterrupt):
+            flash.flash(bench.port, board, hex_file=IMAGES[board], report=interrupt)
+        assert bench.server.board.flash()[: len(image)] != image
+        flash.flash(bench.port, board, hex_file=IMAGES[board])
+        assert bench.server.board.flash()[: len(image)] == image
+
+
+@pytest.mark.slow
+def test_a_port_that_goes_away_in_the_middle_is_named(start_bench: Start) -> None:
+    bench = start_bench("--blank", "--speed", "max")
+
+    def unplug(what: str, fraction: float) -> None:
+        if what == "writing" and fraction > 0.5:
+            bench.close()
+
+    words = rf"^{bench.port} went away while it was being flashed; connect the board and flash it again\.$"
+    with pytest.raises(UserError, match=words):
+        flash.flash(bench.port, "mega", hex_file=IMAGES["mega"], report=unplug)
 
 
 @pytest.mark.slow
