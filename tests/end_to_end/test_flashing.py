@@ -13,6 +13,7 @@ from greywhale.board.flash.bootloader import Bootloader, Dialect, find_bootloade
 from greywhale.board.flash.images import read_image
 from greywhale.cli.story import BenchProcess
 from greywhale.protocol import schema
+from greywhale.protocol.transport import BAUD, LINES, Line
 from greywhale_sim.assemble import BUILDS
 from greywhale_sim.words import lock_step
 from tests.board.flash.hex_files import hex_text
@@ -54,6 +55,50 @@ def test_a_flash_that_was_interrupted_is_repeated(board: str) -> None:
         assert bench.server.board.flash()[: len(image)] != image
         flash.flash(bench.port, board, hex_file=IMAGES[board])
         assert bench.server.board.flash()[: len(image)] == image
+
+
+class BadCable:
+    """The line to a bench, which loses a byte of some pages on their way there, and of some on their way back."""
+
+    def __init__(self, line: Line, lost: list[str]) -> None:
+        self.line, self.lost = line, lost
+        self.restarted, self.close, self.clock, self.wait = line.restarted, line.close, line.clock, line.wait
+        self._pages, self._reads = 0, False
+
+    def write(self, data: bytes) -> None:
+        self._reads = data[:1] == b"t" or data[5:6] == b"\x14"
+        if len(data) > 100:
+            self._pages += 1
+            if self._pages in (3, 20):
+                self.lost.append("question")
+                data = data[:50] + data[51:]
+        self.line.write(data)
+
+    def read(self) -> bytes:
+        data = self.line.read()
+        if data and self._reads and self.lost.count("answer") < 2:
+            self.lost.append("answer")
+            self._reads = False
+            data = data[1:]
+        return data
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("board", IMAGES)
+def test_bytes_that_are_lost_both_ways_do_no_harm(board: str) -> None:
+    """In the middle of a page that is written, and in one that is read."""
+    image, lost = read_image(IMAGES[board]).memory, list[str]()
+    with lock_step("--blank", "--board", board) as bench, pytest.MonkeyPatch.context() as patch:
+        start = LINES[bench.port]
+
+        def open_badly(restart: bool, baud: int) -> Line:
+            line = start(restart, baud)
+            return line if baud == BAUD else BadCable(line, lost)
+
+        patch.setitem(LINES, bench.port, open_badly)
+        flash.flash(bench.port, board, hex_file=IMAGES[board])
+        assert bench.server.board.flash()[: len(image)] == image
+    assert sorted(lost) == ["answer", "answer", "question", "question"]
 
 
 @pytest.mark.slow

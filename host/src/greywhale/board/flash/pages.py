@@ -16,6 +16,7 @@ from greywhale.board.flash.stk500 import Stk500
 from greywhale.protocol.transport import PortLostError
 
 _ATTEMPTS = 3
+_NOTHING = 2 * ERASED  # a word that changes nothing wherever it is written, but a page is erased for it
 
 
 class Memory:
@@ -66,10 +67,6 @@ def write_image(port: str, dialect: Dialect, image: Image, size: int, report: Pr
             line.leave()
     except PortLostError:
         raise UserError(f"{port} went away while it was being flashed; connect the board and flash it again.") from None
-
-
-# A word that changes nothing wherever it is written. But a page is erased for it.
-_NOTHING = 2 * ERASED
 
 
 def blocks_of(image: Image, size: int) -> list[range]:

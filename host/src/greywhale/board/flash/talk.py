@@ -26,15 +26,16 @@ class Talk:
         return taken
 
     def hear(self, question: bytes, answer: bytes) -> bool:
-        """Ask again and again until the answer comes; whether it did. What else is said meanwhile is dropped."""
+        """Ask again and again until the answer comes; whether it did. Answers to what was asked twice are dropped."""
         end = self._line.clock() + _TRY_S
         while answer not in self._heard and self._line.clock() < end:
             self.write(question)
             self._wait(lambda: answer in self._heard, _ASK_EVERY_S)
-        heard = answer in self._heard
+        if answer not in self._heard:
+            return False
         while self.read(64, _ASK_EVERY_S):
             pass
-        return heard
+        return True
 
     def _wait(self, done: Callable[[], bool], wait_s: float) -> None:
         end = self._line.clock() + wait_s
