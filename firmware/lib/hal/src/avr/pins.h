@@ -128,9 +128,8 @@ inline void compare(uint8_t joint, uint16_t value) {
   }
 }
 
-// Both compare registers of a motor with two PWM inputs; those of joints 1 to 3 follow each other.
+// Both compare registers of a motor with two PWM inputs; those of joints 1 to 3 follow each other (checked below).
 inline void compare_pair(uint8_t joint, uint16_t first, uint16_t second) {
-  static_assert(_SFR_ADDR(OCR4C) == _SFR_ADDR(OCR4A) + 4 && _SFR_ADDR(OCR5C) == _SFR_ADDR(OCR5A) + 4, "in a row");
   *(joint == 0 ? &OCR3A : &OCR4A + (joint - 1)) = first;
   *(joint == 0 ? &OCR3B : &OCR5A + (joint - 1)) = second;
 }
@@ -236,5 +235,10 @@ inline void compare(uint8_t joint, uint16_t value) {
 
 }  // namespace pins
 }  // namespace hal
+// An address is a number for the assembler only: for C++ it is a pointer's, which no compiler need take as a constant.
+#elif defined(__AVR_ATmega2560__)
+#if OCR4B != OCR4A + 2 || OCR4C != OCR4A + 4 || OCR5B != OCR5A + 2 || OCR5C != OCR5A + 4
+#error "the compare registers of joints 1 to 3 do not follow each other: see compare_pair()"
+#endif
 #endif  // __ASSEMBLER__
 #endif  // __AVR__

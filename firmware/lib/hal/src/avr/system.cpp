@@ -100,7 +100,13 @@ void set_drivers(bool on) {
 
 void set_led(bool on) { pins::led(on); }
 
-bool eeprom_busy() { return (EECR & (1 << EEPE)) != 0; }
+bool eeprom_busy() {
+  uint8_t control = EECR;
+#if __GNUC__ == 14  // ends in an error of its own (avr_out_extr_not) where it may read and negate the bit in one
+  __asm__("" : "+r"(control));
+#endif
+  return (control & (1 << EEPE)) != 0;
+}
 
 uint8_t eeprom_read(uint16_t address) {
   EEAR = address;
