@@ -4,17 +4,17 @@ tests/end_to_end/test_flashing.py, and by avrdude in tests/oracles/test_avrdude.
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import pytest
 
 from greywhale_sim._board import Board
 from greywhale_sim.programs import load_hex
+from greywhale_sim.wiring import BOOTLOADERS
 from tests.simulated_board.avr import MakeProgram
 from tests.simulated_board.stk500 import Version1
+from tools import ROOT
 
-BOOTLOADERS = Path("/usr/share/arduino/hardware/arduino/avr/bootloaders")
-NANO_HEX = BOOTLOADERS / "atmega" / "ATmegaBOOT_168_atmega328.hex"  # the Nano's "old bootloader"
+NANO_HEX = BOOTLOADERS / "nano.hex"  # the Nano's "old bootloader"
+OVERSIZE = ROOT / "tests/board/flash/bootloaders/optiboot.hex"
 CYCLES_PER_MS = 16_000
 
 
@@ -35,9 +35,8 @@ def test_the_bootloader_cannot_overwrite_itself() -> None:
 
 def test_a_bootloader_too_large_for_the_chip_is_refused() -> None:
     """Debian's build of optiboot is 20 bytes longer than its 512-byte boot section; no chip would take it."""
-    oversize = BOOTLOADERS / "optiboot" / "optiboot_atmega328.hex"
     with pytest.raises(ValueError, match="up to address 0x8013, but the ATmega328P has 32 KB of flash"):
-        load_hex(Board("atmega328p"), oversize, bootloader=True)
+        load_hex(Board("atmega328p"), OVERSIZE, bootloader=True)
 
 
 def test_writing_a_page_takes_the_time_of_the_chip() -> None:

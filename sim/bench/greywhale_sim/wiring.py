@@ -9,14 +9,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-_PACKAGED_BOOTLOADERS = Path(__file__).resolve().parent / "bootloaders"
-_DEBIAN_BOOTLOADERS = Path("/usr/share/arduino/hardware/arduino/avr/bootloaders")  # Debian package arduino-core-avr
-
-
-def _bootloader(board: str, debian: str) -> Path:
-    """The bootloader that an installed package brings along; a checkout has Debian's."""
-    packaged = _PACKAGED_BOOTLOADERS / f"{board}.hex"
-    return packaged if packaged.is_file() else _DEBIAN_BOOTLOADERS / debian
+BOOTLOADERS = Path(__file__).resolve().parent / "bootloaders"  # their source is in sim/bootloaders
 
 
 @dataclass(frozen=True)
@@ -69,7 +62,7 @@ MEGA = Wiring(
     title="Arduino Mega 2560",
     mcu="atmega2560",
     environment="megaatmega2560",
-    bootloader=_bootloader("mega", "stk500v2/stk500boot_v2_mega2560.hex"),
+    bootloader=BOOTLOADERS / "mega.hex",
     bootloader_baud=115200,
     motors=(
         Motor(Pwm("D5", 3, "A"), Pin("D22", "A", 0), Pwm("D2", 3, "B"), Pin("D23", "A", 1)),
@@ -88,8 +81,8 @@ NANO = Wiring(
     title="Arduino Nano (ATmega328P)",
     mcu="atmega328p",
     environment="nanoatmega328",
-    # The older of the Nano's two bootloaders: Debian's build of the newer one (optiboot) is too large for the chip.
-    bootloader=_bootloader("nano", "atmega/ATmegaBOOT_168_atmega328.hex"),
+    # The older of the Nano's two bootloaders: the newer one (optiboot), as Debian builds it, is too large for the chip.
+    bootloader=BOOTLOADERS / "nano.hex",
     bootloader_baud=57600,
     motors=(
         Motor(Pwm("D9", 1, "A"), Pin("D2", "D", 2)),

@@ -10,6 +10,7 @@ from greywhale.base.errors import UserError
 from greywhale.board.flash.boot_code import look_at_boot_code
 from greywhale.board.flash.bootloader import Bootloader, Dialect, find_bootloader
 from greywhale.board.flash.images import read_image
+from greywhale_sim.wiring import BOOTLOADERS
 from tests.board.flash.fake_bootloader import ATMEGA328P, MEGA2560, FakeBootloader, Version1, Version2
 
 MEGA = Dialect(2, 115200)
@@ -50,22 +51,23 @@ def test_a_board_without_bootloader_is_named() -> None:
         assert line.heard == {115200, 57600}
 
 
-SHIPPED = Path("/usr/share/arduino/hardware/arduino/avr/bootloaders")
+OTHERS = Path(__file__).parent / "bootloaders"
 FOUND = Bootloader(Dialect(1, 57600), None)
 
 
 @pytest.mark.parametrize(
     ("path", "comes_back"),
     [
-        ("atmega/ATmegaBOOT_168_atmega328.hex", False),
-        ("atmega/ATmegaBOOT_168_diecimila.hex", False),
-        ("atmega/ATmegaBOOT_168_pro_16MHz.hex", True),  # built to leave the watchdog's resets alone
-        ("optiboot/optiboot_atmega328.hex", True),
-        ("stk500v2/stk500boot_v2_mega2560.hex", True),
+        (BOOTLOADERS / "nano.hex", False),
+        (OTHERS / "diecimila.hex", False),
+        (OTHERS / "pro_16MHz.hex", True),  # built to leave the watchdog's resets alone
+        (OTHERS / "optiboot.hex", True),
+        (BOOTLOADERS / "mega.hex", True),
     ],
+    ids=lambda value: value.stem if isinstance(value, Path) else None,
 )
-def test_a_bootloader_that_looks_at_the_cause_comes_back(path: str, comes_back: bool) -> None:
-    code = read_image(SHIPPED / path).memory.lstrip(b"\xff")
+def test_a_bootloader_that_looks_at_the_cause_comes_back(path: Path, comes_back: bool) -> None:
+    code = read_image(path).memory.lstrip(b"\xff")
     assert look_at_boot_code(FOUND, code).comes_back is comes_back
 
 
