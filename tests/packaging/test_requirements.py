@@ -15,7 +15,7 @@ def pinned(*files: Path) -> dict[str, list[str]]:
     found: dict[str, list[str]] = {}
     lines = [
         line
-        for file in files or (lock.RUN, lock.PAGE, lock.CHECKS)
+        for file in files or (lock.RUN, lock.PAGE, lock.COMPILER, lock.CHECKS)
         for line in file.read_text(encoding="utf-8").splitlines()
     ]
     for line in lines:
@@ -31,10 +31,12 @@ def pinned(*files: Path) -> dict[str, list[str]]:
 
 
 @pytest.mark.parametrize(
-    "file", [lock.RUN, lock.PAGE, lock.CHECKS, lock.ORACLES], ids=["run", "page", "checks", "oracles"]
+    ("file", "least"),
+    [(lock.RUN, 10), (lock.PAGE, 1), (lock.COMPILER, 2), (lock.CHECKS, 10), (lock.ORACLES, 10)],
+    ids=["run", "page", "compiler", "checks", "oracles"],
 )
-def test_every_package_has_digests(file: Path) -> None:
-    assert len(pinned(file)) > (0 if file == lock.PAGE else 10)
+def test_every_package_has_digests(file: Path, least: int) -> None:
+    assert len(pinned(file)) >= least
     assert all(pinned(file).values())
 
 
@@ -45,5 +47,6 @@ def test_the_outside_references_come_beside_the_projects_own_packages() -> None:
 
 
 def test_all_that_is_asked_for_is_pinned() -> None:
-    for asked, files in ((lock.build(), [lock.RUN]), (lock.page(), [lock.PAGE]), (lock.wanted(), [])):
+    groups = [(lock.group("page"), [lock.PAGE]), (lock.group("compiler"), [lock.COMPILER])]
+    for asked, files in ((lock.build(), [lock.RUN]), *groups, (lock.wanted(), [])):
         assert {lock.name_of(name) for name in asked} - set(pinned(*files)) == set()

@@ -3,19 +3,17 @@
 from __future__ import annotations
 
 import hashlib
-import shutil
 import subprocess
 from pathlib import Path
 
 import pytest
 
 from tests.simulated_board.avr import PRELUDE, Compile, MakeProgram, Program
+from tools import avr_tool
 
 
 @pytest.fixture(scope="session")
 def compile_avr(tmp_path_factory: pytest.TempPathFactory) -> Compile:
-    compiler = shutil.which("avr-gcc")
-    assert compiler, "avr-gcc is missing; install Debian's gcc-avr and avr-libc"
     folder = tmp_path_factory.mktemp("avr")
 
     def compile_source(source: str, chip: str) -> Path:
@@ -24,7 +22,16 @@ def compile_avr(tmp_path_factory: pytest.TempPathFactory) -> Compile:
         if not program.exists():
             code = folder / f"{key}.c"
             code.write_text(PRELUDE + source)
-            command = [compiler, f"-mmcu={chip}", "-Os", "-std=gnu11", "-Wall", "-o", str(program), str(code)]
+            command = [
+                avr_tool("avr-gcc"),
+                f"-mmcu={chip}",
+                "-Os",
+                "-std=gnu11",
+                "-Wall",
+                "-o",
+                str(program),
+                str(code),
+            ]
             result = subprocess.run(command, capture_output=True, text=True, check=False)
             assert result.returncode == 0, result.stderr
         return program

@@ -15,7 +15,7 @@ from greywhale.fuzzy.settings import SET_UNIT, JointSettings
 from greywhale_sim._board import Board
 from greywhale_sim.programs import load_elf
 from greywhale_sim.symbols import read_symbols
-from tools import ROOT
+from tools import ROOT, avr_tool
 from tools.benchmarks.figure import Figure, at_most
 from tools.support.fuzzy_on_board import FuzzyOnBoard
 from tools.support.fuzzy_search import LARGEST, Point, Random, climb
@@ -67,7 +67,16 @@ def _cycles() -> list[Figure]:
 def _float_cycles() -> list[Figure]:
     """The same rules in float, as one would first write them."""
     FLOAT_ELF.parent.mkdir(exist_ok=True)
-    command = ["avr-g++", "-std=gnu++14", "-O2", "-mmcu=atmega2560", str(FLOAT_SOURCE), "-o", str(FLOAT_ELF), "-lm"]
+    command = [
+        avr_tool("avr-g++"),
+        "-std=gnu++14",
+        "-O2",
+        "-mmcu=atmega2560",
+        str(FLOAT_SOURCE),
+        "-o",
+        str(FLOAT_ELF),
+        "-lm",
+    ]
     subprocess.run(command, check=True)
     board = Board("atmega2560")
     load_elf(board, FLOAT_ELF)

@@ -6,7 +6,7 @@ import sys
 
 from tools import ROOT
 from tools.oracles import node, wheelhouse
-from tools.setup import debian, stamps, venv
+from tools.setup import stamps, system, venv
 from tools.setup.console import SetupError, say
 
 DEBIAN = (
@@ -26,7 +26,7 @@ REQUIREMENTS = ROOT / "tools" / "oracles" / "requirements.txt"
 
 def main() -> int:
     try:
-        debian.ensure(DEBIAN)
+        system.ensure(DEBIAN)
         wanted = stamps.digest([REQUIREMENTS])
         if not stamps.is_current("oracles", wanted):
             say("installing the outside references (some hundred megabytes)")

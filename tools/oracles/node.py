@@ -5,7 +5,7 @@ from __future__ import annotations
 import shutil
 
 from tools import ROOT
-from tools.setup import debian, stamps
+from tools.setup import stamps, system
 from tools.setup.console import run, say
 
 PINNED = [ROOT / "tests/oracles/avr8js" / name for name in ("package.json", "package-lock.json")]
@@ -14,7 +14,7 @@ PLACE = ROOT / "build" / "avr8js"
 
 def step() -> None:
     if not (shutil.which("node") and shutil.which("npm")):  # somebody may have a newer Node.js than Debian's
-        debian.ensure(("nodejs", "npm"))
+        system.ensure(("nodejs", "npm"))
     wanted = stamps.digest(PINNED)
     if stamps.is_current("avr8js", wanted) and (PLACE / "node_modules" / "avr8js").is_dir():
         return

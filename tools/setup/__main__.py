@@ -1,7 +1,8 @@
-"""Everything that make needs, from a bare Debian on: `python3 -m tools.setup`; `python3 -m tools.setup page` leaves out
+"""Everything that make needs, from a bare system on: `python3 -m tools.setup`; `python3 -m tools.setup page` leaves out
 what only checks and tests need, and `python3 -m tools.setup run` the page of the dashboard too.
 
-Needs only the system's Python. Each step checks whether it has anything to do, so that repeating it takes no time.
+Needs only the system's Python. Each step checks whether it has anything to do, so that repeating it takes no time. What
+runs side by side shares nothing: it reads the .venv, which is whole by then, and writes to places of its own.
 """
 
 from __future__ import annotations
@@ -10,27 +11,53 @@ import fcntl
 import signal
 import sys
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 
 from tools import ROOT
 
 if sys.version_info < (3, 11):  # noqa: UP036 (an older Python is what this is about)
     sys.exit(f"greywhale needs Python 3.11 or newer, but {sys.executable} is {sys.version.split()[0]}.")
 
-from tools.setup import debian, extensions, firmware, page, page_modules, platformio, venv
+from tools.setup import extensions, firmware, page, page_modules, platformio, system, venv
 from tools.setup.console import SetupError, say, side_by_side
 
 
+@contextmanager
+def lock_folder() -> Iterator[None]:
+    """One set-up of this folder at a time."""
+    build = ROOT / "build"
+    try:
+        build.mkdir(exist_ok=True)
+        lock = (build / "setup.lock").open("w")
+    except OSError as error:
+        raise SetupError(f"{build} cannot be written ({error.strerror}): build in a folder of your own.") from None
+    with lock:
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            say("waiting for another set-up of this folder to finish")
+            fcntl.flock(lock, fcntl.LOCK_EX)
+        yield
+
+
 def steps(with_page: bool, checks: bool) -> None:
-    def what_needs_packages() -> None:
-        venv.packages(with_page, checks)
+    source = platformio.choose()
+    system.step(checks, avr_compiler=source == "system")
+    venv.step(with_page, checks, compiler=source != "registry")
+
+    def build_firmware() -> None:
+        platformio.step(source)
+        firmware.step(source, checks)
+
+    def build_page() -> None:
         if with_page:
             page.step()
-        platformio.step(checks)
-        firmware.step(checks)
+        if checks:
+            page_modules.step()
 
-    debian.step(checks)
-    venv.step(checks)
-    side_by_side(extensions.step, what_needs_packages, *([page_modules.step] if checks else []))
+    side_by_side(lambda: extensions.build(checks), build_firmware, build_page)
+    extensions.install(checks)
 
 
 def main(arguments: list[str]) -> int:
@@ -38,22 +65,15 @@ def main(arguments: list[str]) -> int:
     start = time.monotonic()
     for request in (signal.SIGTERM, signal.SIGHUP):  # they end all as Ctrl-C does
         signal.signal(request, signal.default_int_handler)
-    build = ROOT / "build"
-    build.mkdir(exist_ok=True)
-    with (build / "setup.lock").open("w") as lock:
-        try:
-            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            say("waiting for another set-up of this folder to finish")
-            fcntl.flock(lock, fcntl.LOCK_EX)
-        try:
+    try:
+        with lock_folder():
             steps(with_page, checks)
-        except SetupError as error:
-            print(f"set-up: {error}", file=sys.stderr)
-            return 1
-        except KeyboardInterrupt:
-            print("set-up: stopped; run it again to continue.", file=sys.stderr)
-            return 1
+    except SetupError as error:
+        print(f"set-up: {error}", file=sys.stderr)
+        return 1
+    except KeyboardInterrupt:
+        print("set-up: stopped; the same command goes on from there.", file=sys.stderr)
+        return 1
     say(f"ready ({time.monotonic() - start:.1f} s)")
     return 0
 

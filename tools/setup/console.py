@@ -45,7 +45,10 @@ def run(command: Sequence[str | Path], *, what: str, env: Mapping[str, str] | No
             return
         if not _stopped.is_set():
             print("\n".join(said.decode(errors="replace").splitlines()[-60:]), file=sys.stderr, flush=True)
-    raise SetupError(f"{what} failed (exit code {status}); the last lines are above, all of it is in {LOG}.")
+    raise SetupError(
+        f"{what} failed (exit code {status}): the last lines are above, all of it is in {LOG}; "
+        "when the cause is mended, the same command goes on from there."
+    )
 
 
 def _status(words: list[str], env: Mapping[str, str], cwd: Path, output: IO[bytes]) -> int:

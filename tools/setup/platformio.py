@@ -1,19 +1,26 @@
-"""Decides where PlatformIO gets its compilers: from its own registry, or from Debian where that is out of reach."""
+"""Decides where PlatformIO gets its compiler: from its own registry, or where that is out of reach from PyPI, which has
+the same avr-gcc for most machines, or else from the system.
+"""
 
 from __future__ import annotations
 
 import os
+import platform
 import shutil
+import sys
 import urllib.error
 import urllib.request
 from pathlib import Path
 
-from tools import ROOT
-from tools.setup import debian, stamps, venv
-from tools.setup.console import run, say
+from tools import AVR_TOOLS, ROOT
+from tools.setup import stamps, venv
+from tools.setup.console import SetupError, run, say
 
+SOURCES = ("registry", "pypi", "system")
+BY_HAND = "GREYWHALE_PLATFORMIO"  # this variable of the environment names one of them
 CORE = ROOT / "build" / "platformio"
-FINISHED = CORE / "assembled"
+SYSTEM_CORE = ROOT / "build" / "platformio-system"  # the second compiler's, for checks
+FINISHED = "assembled"  # this file says that a core folder is whole
 REGISTRY = "https://api.registry.platformio.org/v3/packages/platformio/platform/atmelavr"
 PATIENCE_S = 4
 
@@ -26,30 +33,65 @@ def registry_answers() -> bool:
         return False
 
 
-def environment() -> dict[str, str]:
+def pypi_has_compiler() -> bool:
+    """Whether tools/setup/compiler.txt has a wheel for this machine."""
+    return sys.platform != "linux" or (platform.machine() == "x86_64" and platform.libc_ver()[0] == "glibc")
+
+
+def _inputs() -> str:
+    return stamps.digest(stamps.files_below("tools/setup", "requirements.txt"))
+
+
+def choose() -> str:
+    """The source of the compiler; once made, the choice stays until the set-up changes."""
+    wanted = os.environ.get(BY_HAND, "")
+    if wanted and wanted not in SOURCES:
+        raise SetupError(f"{BY_HAND} is {wanted!r}: it can be {', '.join(SOURCES)}.")
+    if wanted:
+        return wanted
+    for source in SOURCES:
+        if stamps.is_current(f"platformio-{source}", _inputs()):
+            return source
+    return "registry" if registry_answers() else "pypi" if pypi_has_compiler() else "system"
+
+
+def environment(core: Path = CORE) -> dict[str, str]:
     """What PlatformIO needs in its environment, without a message to anybody and without waiting for updates."""
     quiet = {"PLATFORMIO_SETTING_ENABLE_TELEMETRY": "no", "PLATFORMIO_DISABLE_UPGRADE_CHECK": "true"}
-    core = {"PLATFORMIO_CORE_DIR": str(CORE)} if FINISHED.exists() else {}
-    return {**venv.environment(), **quiet, **core}
+    own = {"PLATFORMIO_CORE_DIR": str(core)} if (core / FINISHED).exists() else {}
+    return {**venv.environment(), **quiet, **own}
 
 
 def full_environment() -> dict[str, str]:
     return {**os.environ, **environment()}
 
 
-def step(checks: bool) -> None:
-    """Assemble the project's own core folder if the registry does not answer; the decision is kept in build/stamps."""
-    wanted = stamps.digest(stamps.files_below("tools/setup", "requirements.txt"), *debian.PACKAGES)
-    chosen = os.environ.get("GREYWHALE_PLATFORMIO", "")  # "registry" or "debian" decides by hand
-    current = stamps.is_current("platformio-registry", wanted) and not FINISHED.exists()
-    current |= stamps.is_current("platformio-debian", wanted) and FINISHED.exists()
-    if current and not chosen:
+def assemble(core: Path, source: str) -> None:
+    command: list[str | Path] = [venv.PYTHON, "-m", "tools.setup.offline_core", core, source]
+    run(command, what="Assembling PlatformIO's folder", env=venv.environment())
+
+
+def step(source: str) -> None:
+    """Assemble the project's own core folder, but for the registry; only one source is current at a time."""
+    if stamps.is_current(f"platformio-{source}", _inputs()) and (source == "registry") != (CORE / FINISHED).exists():
         return
-    if chosen == "registry" or (chosen != "debian" and registry_answers()):
+    for other in SOURCES:
+        stamps.forget(f"platformio-{other}")
+    if source == "registry":
         shutil.rmtree(CORE, ignore_errors=True)
-        stamps.set_current("platformio-registry", wanted)
-        return
-    say("PlatformIO's registry is out of reach: using Debian's compilers in build/platformio")
-    assemble: list[str | Path] = [venv.PYTHON, "-m", "tools.setup.offline_core", CORE]
-    run(assemble, what="Assembling PlatformIO's folder", env=venv.environment())
-    stamps.set_current("platformio-debian", wanted)
+    else:
+        where = {"pypi": "the avr-gcc 7.3.0 of PyPI", "system": "the system's avr-gcc"}[source]
+        say(f"PlatformIO's registry is out of reach: using {where} in build/platformio")
+        assemble(CORE, source)
+    stamps.set_current(f"platformio-{source}", _inputs())
+
+
+def link_tools() -> None:
+    """Let AVR_TOOLS be the compiler's folder. From the registry it comes with the first build."""
+    home = Path(os.environ.get("PLATFORMIO_CORE_DIR") or Path.home() / ".platformio")
+    core = CORE if (CORE / FINISHED).exists() else home
+    place = AVR_TOOLS.parent
+    fresh = place.with_name("avr.new")
+    fresh.unlink(missing_ok=True)
+    fresh.symlink_to(core / "packages" / "toolchain-atmelavr")
+    fresh.replace(place)

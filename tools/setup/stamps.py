@@ -33,16 +33,20 @@ def digest(files: Iterable[Path], *words: str) -> str:
     return total.hexdigest()
 
 
-def forget() -> None:
-    """Nothing is done yet."""
-    shutil.rmtree(STAMPS, ignore_errors=True)
+def forget(step: str = "") -> None:
+    """The step is not done; without a name, none is."""
+    if step:
+        (STAMPS / step).unlink(missing_ok=True)
+    else:
+        shutil.rmtree(STAMPS, ignore_errors=True)
 
 
-def is_current(step: str, value: str) -> bool:
+def is_current(step: str, value: str, strict: bool = False) -> bool:
+    """Whether the step was done for this value; what was done strictly serves others, too."""
     stamp = STAMPS / step
-    return stamp.is_file() and stamp.read_text() == value
+    return stamp.is_file() and stamp.read_text() in {f"{value} strict", *(() if strict else (value,))}
 
 
-def set_current(step: str, value: str) -> None:
+def set_current(step: str, value: str, strict: bool = False) -> None:
     STAMPS.mkdir(parents=True, exist_ok=True)
-    (STAMPS / step).write_text(value)
+    (STAMPS / step).write_text(f"{value} strict" if strict else value)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import re
 import subprocess
 import sys
 from pathlib import Path
@@ -16,8 +15,14 @@ VENV = ROOT / ".venv"
 PYTHON = VENV / "bin" / "python"
 REQUIREMENTS = ROOT / "requirements.txt"  # what it takes to build and run
 FOR_PAGE = ROOT / "tools" / "setup" / "page.txt"
+FOR_COMPILER = ROOT / "tools" / "setup" / "compiler.txt"
 FOR_CHECKS = ROOT / "tools" / "requirements.txt"
-BUILDERS = ("cmake", "nanobind", "ninja", "packaging", "pathspec", "scikit-build-core")
+
+
+def site_packages() -> Path:
+    """Where its packages lie."""
+    (found,) = (VENV / "lib").glob("python*/site-packages")
+    return found
 
 
 def environment() -> dict[str, str]:
@@ -39,37 +44,29 @@ def works() -> bool:
     return answer.returncode == 0 and Path(answer.stdout.strip()) == VENV
 
 
-def _builders() -> Path:
-    """A file with those packages of requirements.txt that build the extensions."""
-    packages = re.split(r"^(?=\w)", REQUIREMENTS.read_text(encoding="utf-8"), flags=re.MULTILINE)
-    file = ROOT / "build" / "builders.txt"
-    file.write_text("".join(one for one in packages if one.split("==")[0] in BUILDERS), encoding="utf-8")
-    return file
-
-
 def _install(**files: Path) -> None:
     """Install what the files pin and their stamps do not know."""
-    stamped = {stamp: stamps.digest([file], sys.version) for stamp, file in files.items()}
+    python = (VENV / "pyvenv.cfg").read_text(encoding="utf-8")  # says whose .venv it is, and its version
+    stamped = {stamp: stamps.digest([file], python) for stamp, file in files.items()}
     missing = {stamp: files[stamp] for stamp, value in stamped.items() if not stamps.is_current(stamp, value)}
     if not missing:
         return
     names = " and ".join(str(file.relative_to(ROOT)) for file in missing.values())
-    say(f"installing the Python packages of {names}")
+    say(f"installing the Python packages of {names} (20 to 60 s)")
     given = [word for file in missing.values() for word in ("--requirement", file)]
     pip_install("--require-hashes", "--no-deps", *given, what=f"Installing the Python packages of {names}")
     for stamp in missing:
         stamps.set_current(stamp, stamped[stamp])
 
 
-def step(checks: bool) -> None:
-    """Make .venv with what builds the extensions."""
+def step(page: bool, checks: bool, compiler: bool) -> None:
+    """Make .venv with all Python packages that are wanted; `compiler`: with PyPI's avr-gcc."""
     if not works():
-        say("making the Python environment .venv")
+        say("making the Python environment .venv (5 s)")
         stamps.forget()  # nothing is installed in it
         run([sys.executable, "-m", "venv", "--clear", VENV], what="Making .venv")
-    _install(venv_builders=_builders())
-
-
-def packages(page: bool, checks: bool) -> None:
-    for_page, for_checks = {"venv_page": FOR_PAGE} if page else {}, {"venv_checks": FOR_CHECKS} if checks else {}
-    _install(venv_run=REQUIREMENTS, **for_page, **for_checks)
+    files = {"venv_run": REQUIREMENTS}
+    files |= {"venv_page": FOR_PAGE} if page else {}
+    files |= {"venv_checks": FOR_CHECKS} if checks else {}
+    files |= {"venv_compiler": FOR_COMPILER} if compiler else {}
+    _install(**files)

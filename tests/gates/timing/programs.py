@@ -8,6 +8,7 @@ from pathlib import Path
 from greywhale_sim._board import Board
 from greywhale_sim.programs import load_elf
 from greywhale_sim.symbols import read_symbols
+from tools import avr_tool
 from tools.gates.timing.bound import Timing
 from tools.gates.timing.cycles import Chip
 from tools.gates.timing.facts import Facts
@@ -22,7 +23,7 @@ class Assembled:
         source.write_text(
             f".global main\nmain: rjmp main\n{also}\n.global work\n.type work, @function\nwork:\n{body}\n"
         )
-        command = ["avr-gcc", f"-mmcu={chip.name.lower()}", "-nostartfiles", str(source), "-o", str(self.elf)]
+        command = [avr_tool("avr-gcc"), f"-mmcu={chip.name.lower()}", "-nostartfiles", str(source), "-o", str(self.elf)]
         subprocess.run(command, check=True)
 
     @property
@@ -50,5 +51,13 @@ class Compiled(Assembled):
         self.elf, self.chip = folder / "program.elf", chip
         path = folder / "program.cpp"
         path.write_text(source)
-        command = ["avr-g++", f"-mmcu={chip.name.lower()}", "-O2", "-std=gnu++14", str(path), "-o", str(self.elf)]
+        command = [
+            avr_tool("avr-g++"),
+            f"-mmcu={chip.name.lower()}",
+            "-O2",
+            "-std=gnu++14",
+            str(path),
+            "-o",
+            str(self.elf),
+        ]
         subprocess.run(command, check=True)

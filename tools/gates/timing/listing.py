@@ -10,6 +10,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
+from tools import avr_tool
+
 SYMBOL = re.compile(r"^([0-9a-f]{8}) <(.+)>:$")
 INSTRUCTION = re.compile(r"^\s+([0-9a-f]+):\t((?:[0-9a-f]{2} )+)\s*\t(\S+)\s*([^;]*)(?:;\s*0x([0-9a-f]+))?")
 BRANCHES = {
@@ -135,5 +137,5 @@ def parse(text: str) -> Program:
 
 
 def read_program(elf: Path) -> Program:
-    run = subprocess.run(["avr-objdump", "-d", "-z", str(elf)], check=True, capture_output=True, text=True)
+    run = subprocess.run([avr_tool("avr-objdump"), "-d", "-z", str(elf)], check=True, capture_output=True, text=True)
     return parse(run.stdout)

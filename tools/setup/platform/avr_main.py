@@ -1,4 +1,4 @@
-# SCons script of the offline `atmelavr` platform: Debian's avr-gcc, and the avrdude on the PATH if there is one, with
+# SCons script of the offline `atmelavr` platform: avr-gcc, and the avrdude on the PATH if there is one, with
 # the same targets and program names as PlatformIO's own platform.
 from SCons.Script import COMMAND_LINE_TARGETS, AlwaysBuild, Builder, Default, DefaultEnvironment
 

@@ -1,9 +1,4 @@
-# The scons.py that PlatformIO starts: runs the SCons installed beside it.
-import os
-import sys
-
-sys.path.insert(0, os.path.dirname(os.path.realpath(__file__)))
-
+# The scons.py that PlatformIO starts: runs the SCons of the same Python.
 import SCons.Script.Main
 
 SCons.Script.Main.main()

@@ -1,5 +1,4 @@
 // The output pins and PWM registers: at reset, and for given duties.
-#include <Arduino.h>
 #include <hal.h>
 
 #include "../report.h"
@@ -23,7 +22,8 @@ uint16_t compare(uint8_t joint) {
   }
 }
 
-void at_reset() {  // before hal::begin(): what start-up code has done
+void at_reset() {       // before hal::begin(): what start-up code has done
+  TIMSK0 = 1 << TOIE0;  // as Arduino's core leaves it
   const uint8_t port_h = PORTH, port_e = PORTE, port_a = PORTA, ddr_h = DDRH, ddr_e = DDRE, ddr_a = DDRA, ddr_l = DDRL;
   hal::begin();
   EQUAL("at_reset_enable_is_driven", ddr_h & enable, enable);
@@ -174,7 +174,7 @@ void drivers() {
 
 }  // namespace
 
-void setup() {
+int main() {
   at_reset();
   after_begin();
   duties();
@@ -184,5 +184,3 @@ void setup() {
   drivers();
   report::end();
 }
-
-void loop() {}

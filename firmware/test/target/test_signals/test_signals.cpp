@@ -1,6 +1,5 @@
 // The pass over the pots in assembly gives the same bits as its portable form: random readings at rails and away from
 // them, every filter, extreme calibrations and limits.
-#include <Arduino.h>
 #include <hal.h>
 #include <signals.h>
 
@@ -52,7 +51,7 @@ uint16_t reading() {
 
 }  // namespace
 
-void setup() {
+int main() {
   uint16_t signals_differ = 0, seen_differs = 0;
   uint16_t low = 0, high = 0, clamped = 0, saturated = 0;  // what the readings came across
   for (uint16_t set = 0; set < 250; ++set) {
@@ -86,5 +85,3 @@ void setup() {
   WITHIN("errors_were_cut", saturated, 20, 7900);
   report::end();
 }
-
-void loop() {}

@@ -1,5 +1,4 @@
 // The tick's period and jitter while everything interrupts, and what happens when one is not finished in time.
-#include <Arduino.h>
 #include <avr/shared_state.h>
 #include <hal.h>
 
@@ -197,7 +196,7 @@ void overrun() {
 
 }  // namespace
 
-void setup() {
+int main() {
   hal::begin();
   start_stopwatch();
   age();
@@ -208,5 +207,3 @@ void setup() {
   overrun();
   report::end();
 }
-
-void loop() {}

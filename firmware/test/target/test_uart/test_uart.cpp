@@ -1,5 +1,4 @@
 // The serial port at 1 Mbaud, both ways at once, with a wire from TX to RX and the ADC chain running.
-#include <Arduino.h>
 #include <hal.h>
 
 #include "../report.h"
@@ -83,7 +82,7 @@ Result overflow() {
 
 }  // namespace
 
-void setup() {
+int main() {
   hal::begin();
   drain();
   const Result full = bursts();
@@ -105,5 +104,3 @@ void setup() {
   EQUAL("afterwards_bytes_come_again", again.wrong == 0 && again.received == bytes, true);
   report::end();
 }
-
-void loop() {}

@@ -1,5 +1,4 @@
 // The upper half of a product in assembly is its portable form's, at all extremes and at random.
-#include <Arduino.h>
 #include <hal.h>
 #include <signal_chain/upper_product.h>
 
@@ -15,7 +14,7 @@ bool is_right(uint16_t a, uint16_t b) {
 
 }  // namespace
 
-void setup() {
+int main() {
   constexpr uint16_t extremes[] = {0, 1, 2, 127, 128, 255, 256, 257, 4092, 16384, 32767, 32768, 65280, 65472, 65535};
   uint16_t wrong = 0, wrong_at_random = 0;
   for (const uint16_t a : extremes) {
@@ -30,5 +29,3 @@ void setup() {
   EQUAL("random_factors", wrong_at_random, 0);
   report::end();
 }
-
-void loop() {}
