@@ -6,6 +6,7 @@ For those who measure it or attack it, in a checkout.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -29,15 +30,15 @@ RAM = {"atmega2560": (0x200, 0x2200), "atmega328p": (0x100, 0x900)}
 
 
 class BoardWithImage:
-    """A board that has booted, with all potentiometers in their middle."""
+    """A board that has booted, with all potentiometers in their middle; `builds` holds an image for each board."""
 
-    def __init__(self, board: str, seed: int = 1) -> None:
+    def __init__(self, board: str, seed: int = 1, builds: Path = BUILDS) -> None:
         self.wiring = BOARDS[board]
         self.ram = RAM[self.wiring.mcu]
         self.random = np.random.default_rng(7)
         self.millivolts = np.full(8, 2500.0)
         self.board: Any = Board(self.wiring.mcu)
-        elf = BUILDS / self.wiring.environment / "firmware.elf"
+        elf = builds / self.wiring.environment / "firmware.elf"
         self.symbols = read_symbols(elf)
         load_elf(self.board, elf)
         self.board.power_on(seed)

@@ -12,14 +12,14 @@ from tools.gates import stack
 from tools.gates.timing import facts, loops
 from tools.gates.timing.bound import Timing
 from tools.gates.timing.graph import Graph
-from tools.gates.timing.image import PERIOD, TARGETS, TICK, Target, is_described, times
+from tools.gates.timing.image import PERIOD, TICK, Target, built, times
 from tools.gates.timing.listing import Program, read_program
 from tools.gates.timing.measure import Session, busiest, worst
 
 pytestmark = pytest.mark.slow
-# Of another compiler's image facts.toml says nothing; the set-up may have taken PlatformIO's.
-DESCRIBED = [target for target in TARGETS if is_described(target.elf)]
-BOARDS = pytest.mark.parametrize("target", DESCRIBED, ids=lambda target: target.chip.name)
+# Of another compiler's image facts.toml says nothing: the system's may be any.
+DESCRIBED = [target for target in built() if target.is_described()]
+BOARDS = pytest.mark.parametrize("target", DESCRIBED, ids=lambda target: target.title)
 
 
 @dataclass(frozen=True)
@@ -31,7 +31,7 @@ class Step:
     cycles: int
 
 
-@pytest.fixture(scope="module", params=DESCRIBED, ids=lambda target: target.chip.name)
+@pytest.fixture(scope="module", params=DESCRIBED, ids=lambda target: target.title)
 def traced(request: pytest.FixtureRequest) -> tuple[Target, Program, list[Step]]:
     """24 ticks with the motors on, step by step: the line is busy, and pots pass through everything they can do."""
     target: Target = request.param

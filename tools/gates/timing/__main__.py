@@ -1,4 +1,4 @@
-"""Prints the bounds of both images beside the worst that was measured on the simulated boards.
+"""Prints the bounds of all images beside the worst that was measured on the simulated boards.
 
 python -m tools.gates.timing            the bounds, and the worst measured (minutes)
 python -m tools.gates.timing --commit   takes the bounds of the images as they are into budget.toml
@@ -9,7 +9,7 @@ from __future__ import annotations
 import sys
 
 from tools.gates.timing import budget, measure
-from tools.gates.timing.image import TARGETS, Target, Times, times
+from tools.gates.timing.image import Target, Times, built, times
 
 
 def _row(what: str, bound: int, measured: int) -> str:
@@ -23,7 +23,7 @@ def _response(found: Times, receiving: bool) -> str:
 
 def _print(target: Target, found: Times) -> None:
     worst = measure.worst(target)
-    print(f"{target.chip.name:26} {'bound':>7} {'measured':>9}   cycles")
+    print(f"{target.title:26} {'bound':>7} {'measured':>9}   cycles")
     for what, bound in budget.flat(found).items():
         print(_row(what, bound, worst[what]))
     print(f"  tick with its interrupts: {_response(found, False)} when nothing is received,")
@@ -32,12 +32,13 @@ def _print(target: Target, found: Times) -> None:
 
 
 def main(arguments: list[str]) -> int:
-    bounds = {target.chip.name: times(target) for target in TARGETS}
+    targets = [target for target in built() if target.is_described()]
+    bounds = {target.title: times(target) for target in targets}
     if arguments == ["--commit"]:
         budget.BUDGET.write_text(budget.text(bounds))
         return 0
-    for target in TARGETS:
-        _print(target, bounds[target.chip.name])
+    for target in targets:
+        _print(target, bounds[target.title])
     return 0
 
 

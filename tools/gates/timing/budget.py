@@ -15,7 +15,7 @@ HEAD = """\
 
 
 def load(path: Path = BUDGET) -> dict[str, dict[str, int]]:
-    """Chip -> what -> cycles."""
+    """Chip and compiler -> what -> cycles."""
     return tomllib.loads(path.read_text())
 
 
@@ -24,18 +24,18 @@ def flat(times: Times) -> dict[str, int]:
 
 
 def text(bounds: dict[str, Times]) -> str:
-    """The file for these bounds, by chip."""
+    """The file for these bounds, by chip and compiler."""
     parts = [HEAD]
-    for chip, times in bounds.items():
+    for title, times in bounds.items():
         lines = [f'"{what}" = {cycles}' for what, cycles in flat(times).items()]
-        parts.append("\n".join([f"[{chip}]", *lines, ""]))
+        parts.append("\n".join([f'["{title}"]', *lines, ""]))
     return "\n".join(parts)
 
 
-def complaints(chip: str, times: Times, committed: dict[str, dict[str, int]]) -> list[str]:
+def complaints(title: str, times: Times, committed: dict[str, dict[str, int]]) -> list[str]:
     """One sentence for each bound above its number."""
     return [
         f"the bound of {what} is {cycles} cycles, {cycles - allowed} more than tools/gates/timing/budget.toml allows."
         for what, cycles in flat(times).items()
-        if cycles > (allowed := committed[chip][what])
+        if cycles > (allowed := committed[title][what])
     ]

@@ -17,7 +17,7 @@ class Facts:
 
     loops: dict[str, list[int]] = field(default_factory=dict)
     exclusions: dict[str, list[list[str]]] = field(default_factory=dict)
-    compiler: str = ""  # version of the GCC whose loops they are
+    compilers: tuple[str, ...] = ()  # versions of GCC whose loops they are
 
     def times(self, function: str, found: list[str]) -> list[int]:
         """For each loop found in a function how often its head runs at most, for each time that it is entered."""
@@ -36,7 +36,7 @@ class Facts:
 def load(path: Path = FACTS) -> Facts:
     """Reads the annotations; each needs its reason."""
     document = tomllib.loads(path.read_text())
-    facts = Facts(compiler=document.get("compiler", ""))
+    facts = Facts(compilers=tuple(document.get("compilers", ())))
     for entry in document.get("function", []):
         name = entry["name"]
         for part in [*entry.get("loop", []), *entry.get("apart", [])]:

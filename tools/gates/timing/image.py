@@ -5,12 +5,13 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
 
 from elftools.elf.elffile import ELFFile
 
-from tools import BUILT_FIRMWARE
+from tools import BUILT_BY_SYSTEM, BUILT_FIRMWARE
 from tools.gates.timing import facts
 from tools.gates.timing.bound import Timing
 from tools.gates.timing.cycles import MEGA, NANO, Chip
@@ -34,10 +35,27 @@ class Target:
     chip: Chip
     environment: str
     vectors: Mapping[str, int]
+    built: Path = BUILT_FIRMWARE
 
     @property
     def elf(self) -> Path:
-        return BUILT_FIRMWARE / self.environment / "firmware.elf"
+        return self.built / self.environment / "firmware.elf"
+
+    @cached_property
+    def compiler(self) -> str:
+        """The version of the GCC that made the image."""
+        with self.elf.open("rb") as stream:
+            section = ELFFile(stream).get_section_by_name(".comment")
+            found = re.search(rb"GCC: \(.*?\) ([0-9.]+)", section.data()) if section else None
+        return found[1].decode() if found else "unknown"
+
+    @property
+    def title(self) -> str:
+        return f"{self.chip.name}, GCC {self.compiler}"
+
+    def is_described(self) -> bool:
+        """Whether facts.toml is about the compiler that made the image: another one may make other loops."""
+        return self.compiler in facts.load().compilers
 
 
 def _vectors(tick: int, chain: int, received: int, sent: int, conversion: int) -> dict[str, int]:
@@ -54,6 +72,12 @@ TARGETS = (
     Target(MEGA, "megaatmega2560", _vectors(21, 22, 25, 26, 29)),
     Target(NANO, "nanoatmega328", _vectors(14, 15, 18, 19, 21)),
 )
+
+
+def built() -> list[Target]:
+    """The boards' images, and those by the system's compiler where checks are set up."""
+    second = [replace(target, built=BUILT_BY_SYSTEM) for target in TARGETS]
+    return [*TARGETS, *(target for target in second if target.elf.exists())]
 
 
 @dataclass(frozen=True)
@@ -93,22 +117,9 @@ def _handlers(program: Program, target: Target) -> dict[str, int]:
     return {role: program.vectors[number] for role, number in target.vectors.items()}
 
 
-def compiler(elf: Path) -> str:
-    """The version of the GCC that made an image."""
-    with elf.open("rb") as stream:
-        section = ELFFile(stream).get_section_by_name(".comment")
-        found = re.search(rb"GCC: \(.*?\) ([0-9.]+)", section.data()) if section else None
-    return found[1].decode() if found else "unknown"
-
-
-def is_described(elf: Path) -> bool:
-    """Whether facts.toml is about the compiler that made this image: another one makes other loops."""
-    return compiler(elf) == facts.load().compiler
-
-
-def times(target: Target, elf: Path | None = None) -> Times:
+def times(target: Target) -> Times:
     """The bounds of an image; raises ImageError for what has none."""
-    program = read_program(elf or target.elf)
+    program = read_program(target.elf)
     timing = Timing(program, target.chip, facts.load())
     waking, vector_table_jump = target.chip.interrupt_entry, 3
     entry = waking + target.chip.interrupt_entry + vector_table_jump

@@ -28,9 +28,8 @@ class Session(BoardWithImage):
     """The real image, with motors on and readings that disturb it."""
 
     def __init__(self, target: Target, seed: int) -> None:
-        super().__init__(
-            next(name for name, wiring in BOARDS.items() if wiring.environment == target.environment), seed
-        )
+        name = next(name for name, wiring in BOARDS.items() if wiring.environment == target.environment)
+        super().__init__(name, seed, target.built)
         self.random = np.random.default_rng(seed)
         self.tick = read_program(target.elf).entry(TICK)
         self.return_address = target.chip.return_address
