@@ -12,6 +12,7 @@ import signal
 import sys
 import time
 from collections.abc import Sequence
+from io import TextIOWrapper
 from types import FrameType
 from typing import Annotated, NoReturn, TypedDict
 
@@ -52,6 +53,7 @@ def main() -> NoReturn:
 def run(arguments: Sequence[str]) -> int:
     """Run the command line; its exit code."""
     _open_closed_streams()
+    _print_in_any_encoding()
     if signal.getsignal(signal.SIGINT) is signal.SIG_DFL:  # as at the start, before a Ctrl-C could be answered
         signal.signal(signal.SIGINT, signal.default_int_handler)
     signal.signal(signal.SIGTERM, _terminated)
@@ -101,6 +103,13 @@ def _open_closed_streams() -> None:
         except OSError:
             os.open(os.devnull, os.O_RDWR)  # takes the lowest free number
             setattr(sys, name, open(number, mode, encoding="utf-8", closefd=False))  # noqa: SIM115 (until the end)
+
+
+def _print_in_any_encoding() -> None:
+    """Print a mark in the place of what the terminal's encoding lacks, as many lack "²": no report is lost for that."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, TextIOWrapper):  # a notebook's and a test's are others
+            stream.reconfigure(errors="replace")
 
 
 def _refuse_empty(arguments: Sequence[str]) -> None:
