@@ -1,16 +1,19 @@
 """What a user installs with pip is whole: in an empty environment without compiler, PlatformIO and checkout, it works.
 
-The wheels are built from the source distributions, as a stranger's pip would do it, and nothing is fetched.
+The wheels are built from the source distributions, as a stranger's pip would do it, and nothing is fetched. Where they
+are for the stable ABI, they are installed into the Pythons that GREYWHALE_OTHER_PYTHONS names as well.
 """
 
 from __future__ import annotations
 
 import json
+import os
 import shutil
+import signal
 import subprocess
 import sys
 import tarfile
-import venv as python_venv
+import urllib.request
 import zipfile
 from dataclasses import dataclass
 from pathlib import Path
@@ -20,9 +23,11 @@ import pytest
 from greywhale.board.flash.targets import BOARDS
 from greywhale.cli.story import BenchProcess
 from tools import ROOT, dist
-from tools.oracles.wheelhouse import WHEELHOUSE
+from tools.oracles import wheelhouse
 from tools.setup import platformio
 
+OWN = Path(sys.executable)
+PYTHONS = [OWN, *(Path(python) for python in os.environ.get("GREYWHALE_OTHER_PYTHONS", "").split(os.pathsep) if python)]
 CONTROLLERS = {"before_tuning", "table_8", "table_9", "table_10"}
 pytestmark = pytest.mark.timeout(1200)  # of which building the extensions takes the most
 
@@ -72,11 +77,12 @@ def wheels(built: list[Path]) -> tuple[Path, Path]:
     return greywhale, bench
 
 
-def install(folder: Path, *wheels: Path) -> Installation:
+def install(folder: Path, *wheels: Path, python: Path = OWN) -> Installation:
     """A new environment with these wheels and what they depend on."""
-    python_venv.create(folder / "env")
+    subprocess.run([python, "-m", "venv", "--without-pip", folder / "env"], check=True)
     pip = [sys.executable, "-m", "pip", "--python", folder / "env/bin/python", "--disable-pip-version-check"]
-    offline = ["--no-index", "--find-links", WHEELHOUSE, "--no-compile"]  # a module is compiled when it is imported
+    found = wheelhouse.place(python)
+    offline = ["--no-index", "--find-links", found, "--no-compile"]  # a module is compiled when it is imported
     subprocess.run([*pip, "install", "--quiet", *offline, *wheels], check=True)
     return Installation(folder / "env")
 
@@ -87,9 +93,12 @@ def alone(wheels: tuple[Path, Path], tmp_path_factory: pytest.TempPathFactory) -
     return install(tmp_path_factory.mktemp("alone"), wheels[0])
 
 
-@pytest.fixture(scope="session")
-def with_bench(wheels: tuple[Path, Path], tmp_path_factory: pytest.TempPathFactory) -> Installation:
-    return install(tmp_path_factory.mktemp("with-bench"), *wheels)
+@pytest.fixture(scope="session", params=PYTHONS, ids=lambda python: python.parents[1].name)
+def with_bench(
+    wheels: tuple[Path, Path], request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
+) -> Installation:
+    wheelhouse.step(request.param)
+    return install(tmp_path_factory.mktemp("with-bench"), *wheels, python=request.param)
 
 
 def names_in(archive: Path) -> set[str]:
@@ -203,10 +212,27 @@ def test_a_board_is_flashed_tuned_and_recorded(alone: Installation, board: str, 
         alone.ask("evaluate", str(log))
 
 
-def test_the_demo_runs_in_an_empty_environment(with_bench: Installation, tmp_path: Path) -> None:
-    """It flashes its board."""
-    table = with_bench.package / "data" / "fuzzy_tables" / "table_8.toml"
+def test_the_whole_story_runs_in_an_empty_environment(with_bench: Installation, tmp_path: Path) -> None:
+    """The demo flashes its board, practises, identifies and tunes; the verbs do it again from its recordings."""
     out = tmp_path / "out"
-    facts = with_bench.ask("demo", "--duration", "4", "--controller", str(table), "--out", str(out))
+    facts = with_bench.ask("demo", "--duration", "4", "--practice", "10", "--budget", "20", "--out", str(out))
     assert facts["board"] == "mega2560"
     assert (out / "following.png").stat().st_size > 10_000
+    model, controller = tmp_path / "model.toml", tmp_path / "controller.toml"
+    with_bench.ask("identify", str(out / "practice.csv"), "--validate", str(out / "before.csv"), "--out", str(model))
+    with_bench.ask("tune", str(model), "--budget", "20", "--out", str(controller))
+    assert "joint" in controller.read_text(encoding="utf-8")
+
+
+def test_the_page_is_served_with_a_bench(with_bench: Installation, tmp_path: Path) -> None:
+    command = [with_bench.folder / "bin" / "greywhale", "dashboard", "--sim", "--no-browser"]
+    environment = {"PATH": str(with_bench.folder / "bin"), "HOME": str(tmp_path), "PYTHONUNBUFFERED": "1"}
+    server = subprocess.Popen(command, cwd=tmp_path, env=environment, stdout=subprocess.PIPE, text=True)
+    try:
+        assert server.stdout is not None
+        address = next(word for line in server.stdout for word in line.split() if word.startswith("http://"))
+        with urllib.request.urlopen(address, timeout=60) as answer:
+            assert "<title>greywhale" in answer.read().decode()
+    finally:
+        server.send_signal(signal.SIGINT)
+        server.wait(60)
