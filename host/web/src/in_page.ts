@@ -16,6 +16,7 @@ import { LiveView } from "./live/view";
 import { State } from "./link/schema";
 import { ParametersView } from "./parameters/view";
 import { button, el, select } from "./parts/dom";
+import { browserStore } from "./parts/storage";
 import { startTheme } from "./parts/theme";
 import { beside } from "./parts/view";
 import type { NamedText } from "./port";
@@ -82,7 +83,7 @@ function offerOthers(shell: Shell, docs: string | null): void {
 }
 
 async function showBench({ code, data, worker, tuner, docs }: Parts): Promise<void> {
-  const board = new PageBoard(worker, code, data, () => localStorage);
+  const board = new PageBoard(worker, code, data, browserStore);
   const session = new Session(board);
   const hand = new LeaderHand(board, session);
   const arm = new ArmView(session, { arm: async () => data.description });

@@ -10,6 +10,7 @@ import type { Host } from "./host";
 import { LiveView } from "./live/view";
 import { LogsView } from "./logs/view";
 import { el } from "./parts/dom";
+import { tabStore } from "./parts/storage";
 import { startTheme } from "./parts/theme";
 import { Session } from "./session";
 import { Shell } from "./shell";
@@ -18,14 +19,11 @@ import { ServerHost } from "./sources/server_host";
 
 const KEY = "greywhale-token";
 
-/** The secret of the server, out of the address bar and kept for a reload of this tab. */
+/** The secret of the server, out of the address bar and kept for a reload of this tab; it stays there where nothing is kept. */
 function takeToken(): string {
   const given = new URLSearchParams(location.hash.slice(1)).get("token");
-  if (given) {
-    sessionStorage.setItem(KEY, given);
-    history.replaceState(null, "", location.pathname);
-  }
-  return given ?? sessionStorage.getItem(KEY) ?? "";
+  if (given && tabStore.write(KEY, given)) history.replaceState(null, "", location.pathname);
+  return given ?? tabStore.read(KEY) ?? "";
 }
 
 startTheme();

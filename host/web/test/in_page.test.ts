@@ -8,6 +8,7 @@ import { encodeFrame, FrameDecoder } from "../src/link/frames";
 import { EnableRequest, Fault, HelloReply, Sample, TelemetryRequest } from "../src/link/schema";
 import type { BenchData } from "../src/sources/in_page/messages";
 import { Clock } from "../src/sources/in_page/clock";
+import { Store } from "../src/parts/storage";
 import { keepEeprom, keptEeprom } from "../src/sources/in_page/eeprom";
 import { Life } from "../src/sources/in_page/life";
 import { BenchModule } from "../src/sources/in_page/module";
@@ -125,17 +126,20 @@ test("play in the gears lets a joint run past its goal", async () => {
   await assert.rejects(() => past(11), /The play is 11 times; choose one from 0 to 10/);
 });
 
-/** A browser's storage with as many places as a test needs; null for one that keeps nothing. */
-function storage(kept: Map<string, string> | null): () => Storage {
-  return () => {
-    if (!kept) throw new Error("denied");
-    return {
-      getItem: (key: string) => kept.get(key) ?? null,
-      setItem: (key: string, text: string) => void kept.set(key, text),
-      removeItem: (key: string) => void kept.delete(key),
-    } as Storage;
-  };
+/** A browser's store with room for so many letters, which it counts as browsers do. */
+function storage(kept: Map<string, string>, room = Infinity): Store {
+  const size = (): number => [...kept].flat().join("").length;
+  return new Store(() => ({
+    getItem: (key: string) => kept.get(key) ?? null,
+    setItem: (key: string, text: string) => {
+      if (size() - (kept.has(key) ? `${key}${kept.get(key)!}`.length : 0) + `${key}${text}`.length > room) throw new Error("full");
+      kept.set(key, text);
+    },
+    removeItem: (key: string) => void kept.delete(key),
+  } as Storage));
 }
+
+const FORBIDDEN = [new Store(() => null), new Store(() => { throw new Error("denied"); })];
 
 test("a browser keeps the board's memory; what is damaged is told and set aside", () => {
   const kept = new Map<string, string>();
@@ -150,6 +154,21 @@ test("a browser keeps the board's memory; what is damaged is told and set aside"
     assert.ok(found.content === null && found.sentence.includes("set aside"), damaged);
     assert.deepEqual([kept.get(key), [...kept.values()]], [undefined, [damaged]]);
   }
-  assert.match(keptEeprom(storage(null)).sentence, /keeps nothing/);
-  assert.equal(keepEeprom(storage(null), content), false);
+});
+
+test("a full store loses nothing, and a forbidden one is told", () => {
+  const content = new Uint8Array(1024);
+  for (const [room, sentence] of [[9, "is set aside as"], [1, "stays until the board stores anew"]] as const) {
+    const kept = new Map([["greywhale-eeprom", "damaged"], ["other", "x".repeat(3000)]]);
+    const full = storage(kept, [...kept].flat().join("").length + room);
+    const found = keptEeprom(full);
+    assert.ok(found.content === null && found.sentence.includes(sentence));
+    assert.ok([...kept.values()].includes("damaged"));
+    assert.equal(keepEeprom(full, content), false);
+    assert.ok([...kept.values()].includes("damaged"));
+  }
+  for (const store of FORBIDDEN) {
+    assert.match(keptEeprom(store).sentence, /keeps nothing/);
+    assert.deepEqual([store.read("a"), store.write("a", "b"), store.move("a", "b"), keepEeprom(store, content)], [null, false, false, false]);
+  }
 });

@@ -39,15 +39,16 @@ async function takeOver(): Promise<void> {
   await worker.clients.claim();
 }
 
+/** What a browser refuses to open, read or fill is no cache: the network answers without it. */
 async function answer(request: Request): Promise<Response> {
-  const cache = await caches.open(CACHE);
-  const kept = await cache.match(request, { ignoreSearch: true });
+  const cache = await caches.open(CACHE).catch(() => null);
+  const kept = await cache?.match(request, { ignoreSearch: true }).catch(() => undefined);
   if (kept && request.url.startsWith(`${scope}${BUILD}/`)) return kept;
   try {
     // A browser may take a page for fresh that is not: a server that says nothing about it lets it guess.
     const answered = await fetch(request.mode === "navigate" ? new Request(request.url, { cache: "no-cache", redirect: "manual" }) : request);
     const isPage = PAGES.includes(request.url.replace(/[?#].*/, "")); // this build's own is kept with its parts
-    if (answered.status === 200 && !isPage) await cache.put(request, answered.clone());
+    if (answered.status === 200 && !isPage) await cache?.put(request, answered.clone()).catch(() => undefined);
     return answered;
   } catch (error) {
     if (kept) return kept;

@@ -1,13 +1,15 @@
 // Light or dark, as the person or else the system wants it, and the colours for what draws itself.
 
 import { Signal } from "./signal";
+import { browserStore } from "./storage";
 
 export const themeChanged = new Signal();
 const KEY = "greywhale-theme";
 const dark = matchMedia("(prefers-color-scheme: dark)");
+let chosenHere: string | null = null; // whether or not the browser keeps it
 
 export function isDark(): boolean {
-  const chosen = localStorage.getItem(KEY);
+  const chosen = chosenHere ?? browserStore.read(KEY);
   return chosen ? chosen === "dark" : dark.matches;
 }
 
@@ -23,7 +25,8 @@ export function startTheme(): void {
 }
 
 export function switchTheme(): void {
-  localStorage.setItem(KEY, isDark() ? "light" : "dark");
+  chosenHere = isDark() ? "light" : "dark";
+  browserStore.write(KEY, chosenHere);
   apply();
 }
 

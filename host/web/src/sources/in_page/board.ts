@@ -4,6 +4,7 @@ import type { Board, BoardListener } from "../../board";
 import { SIZES, type BenchControls, type BenchWish, type Bench as BenchActions, type Range, type Size } from "../../host";
 import { encodeFrame } from "../../link/frames";
 import { StopRequest } from "../../link/schema";
+import type { Store } from "../../parts/storage";
 import { keepEeprom, keptEeprom } from "./eeprom";
 import { SPEED } from "./life";
 import type { BenchData, FromBench, ToBench } from "./messages";
@@ -23,10 +24,10 @@ export class PageBoard implements Board, BenchActions {
   private keptSentence = ""; // of what the browser had kept; told once the board is there
   private unkeptTold = false;
 
-  /** `worker` runs worker.ts, `code` is the module, `storage` the browser's own. */
+  /** `worker` runs worker.ts, `code` is the module, `store` the browser's own. */
   constructor(
     private readonly worker: Worker, private readonly code: ArrayBuffer, private readonly data: BenchData,
-    private readonly storage: () => Storage,
+    private readonly store: Store,
   ) {
     this.sizes = Object.fromEntries(SIZES.map((size) => [size, this.range(size).value])) as Record<Size, number>;
     worker.addEventListener("message", ({ data: message }: MessageEvent<FromBench>) => this.heard(message));
@@ -36,10 +37,11 @@ export class PageBoard implements Board, BenchActions {
 
   listen(listener: BoardListener): void {
     this.listener = listener;
-    const kept = keptEeprom(this.storage);
+    const kept = keptEeprom(this.store);
     this.tell({ kind: "start", code: this.code, data: this.data, eeprom: kept.content });
     this.showVisible();
     this.keptSentence = kept.sentence;
+    this.unkeptTold = !this.store.allowed;
   }
 
   private tell(message: ToBench): void {
@@ -65,7 +67,7 @@ export class PageBoard implements Board, BenchActions {
         this.listener?.link({ open: true, port: PORT, sentence: RESTARTED });
         break;
       case "eeprom":
-        if (!keepEeprom(this.storage, message.content) && !this.unkeptTold) {
+        if (!keepEeprom(this.store, message.content) && !this.unkeptTold) {
           this.unkeptTold = true;
           this.listener?.refused(0, 0, UNKEPT);
         }

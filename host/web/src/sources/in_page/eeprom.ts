@@ -1,5 +1,6 @@
 // The board's EEPROM, kept by the browser. Content that is damaged is told and set aside.
 
+import type { Store } from "../../parts/storage";
 import { crc32 } from "../../samples/crc32";
 
 const KEY = "greywhale-eeprom";
@@ -9,30 +10,22 @@ const ASIDE = "greywhale-eeprom-damaged";
 export type Kept = { readonly content: Uint8Array | null; readonly sentence: string };
 
 /** What the browser has kept, and a sentence where something is wrong with it. */
-export function keptEeprom(storage: () => Storage): Kept {
-  let text: string | null;
-  try {
-    text = storage().getItem(KEY);
-  } catch {
+export function keptEeprom(store: Store): Kept {
+  if (!store.allowed) {
     return { content: null, sentence: "This browser keeps nothing for this page: what the board stores ends with it." };
   }
+  const text = store.read(KEY);
   if (text === null) return { content: null, sentence: "" };
   const content = unpacked(text);
   if (content) return { content, sentence: "" };
-  storage().setItem(ASIDE, text);
-  storage().removeItem(KEY);
-  return { content: null, sentence: `What this browser had kept of the board's memory is damaged; it is set aside as ${ASIDE}, and the board has its defaults.` };
+  const where = store.move(KEY, ASIDE) ? `it is set aside as ${ASIDE}` : "without room to set it aside, it stays until the board stores anew";
+  return { content: null, sentence: `What this browser had kept of the board's memory is damaged; ${where}, and the board has its defaults.` };
 }
 
 /** Keeps it from now on; false where the browser does not. */
-export function keepEeprom(storage: () => Storage, content: Uint8Array): boolean {
+export function keepEeprom(store: Store, content: Uint8Array): boolean {
   const data = Array.from(content, (byte) => byte.toString(16).padStart(2, "0")).join("");
-  try {
-    storage().setItem(KEY, `${data} ${crc32(data)}`);
-    return true;
-  } catch {
-    return false;
-  }
+  return store.write(KEY, `${data} ${crc32(data)}`);
 }
 
 function unpacked(text: string): Uint8Array | null {
