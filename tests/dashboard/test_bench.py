@@ -82,8 +82,15 @@ def test_every_fault_is_staged_by_its_name_and_mended(bench: LockStepBench, cont
     "wish",
     [
         *({}, {"dance": 1}, {"leader": [1, 2, 3]}, {"leader": [1, 2, 3, "4; power off"]}, {"leader": [0, 0, 0, 1e9]}),
-        *({"supply": True}, {"supply": "9"}, {"supply": float("nan")}, {"fault": "dance"}, {"fault": "x\npower off"}),
-        *({"power": 1}, {"motion": ""}, {"speed": 0}),
+        *(
+            {"supply": True},
+            {"supply": "9"},
+            {"supply": float("nan")},
+            {"supply": 10**400},
+            {"fault": "dance"},
+            {"fault": "x\npower off"},
+        ),
+        *({"power": 1}, {"motion": ""}, {"motion": "x" * 5000}, {"speed": 0}, {"leader": [0, 0, 0, -(10**400)]}),
     ],
 )
 def test_what_is_no_wish_changes_nothing(bench: LockStepBench, controls: BenchControls, wish: dict[str, Any]) -> None:

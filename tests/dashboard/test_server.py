@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import json
 import secrets
+import socket as sockets
 import threading
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
@@ -37,6 +38,7 @@ def page(shared: Shared, tmp_path: Path) -> Iterator[Page]:
     (files / "page.js").write_text("1")
     folder = tmp_path / "folder"
     folder.mkdir()
+    (folder / "loop").symlink_to("loop")
     (folder / "a motion.csv").write_text("time_s,leader_0,leader_1,leader_2,leader_3\n")
     (folder / "a log.csv").write_text(f"# {TITLE}\n{HEADING}\n" + "".join(f"{t}{12 * ',0'},boot\n" for t in (1, 1.001)))
     listener = server.listen()
@@ -185,8 +187,36 @@ def test_a_log_comes_as_bytes_and_its_errors_as_a_terminals_sentence(page: Page)
         assert reason in json.loads(told)["error"]
 
 
+def test_no_request_ends_in_a_traceback(page: Page, caplog: pytest.LogCaptureFixture) -> None:
+    for target in ("x", "*", "http://127.0.0.1/", "board", "?"):
+        with sockets.create_connection(("127.0.0.1", page.port)) as raw:
+            request = f"GET {target} HTTP/1.1\r\nHost: 127.0.0.1:{page.port}\r\nConnection: close\r\n\r\n"
+            raw.sendall(request.encode())
+            answer = raw.makefile("rb").read()
+        assert answer.startswith(b"HTTP/1.1 400 "), (target, answer)
+    long, whole = "x" * 5000, [0] * len(schema.PARAMETERS)
+    bodies: list[object] = [
+        *({"raw": whole, "board": 1, "file": name} for name in (long, "x" * 300, "loop", "loop/a", "..", ".")),
+        *({"raw": [10**400, *whole[1:]], "board": 1}, {"raw": whole, "board": 10**400}, {"raw": whole, "board": -1}),
+        *({"verb": long}, {"verb": "info", "arguments": {long: 1}}, {}, {"raw": float("nan")}, {"raw": "\ud800"}),
+        *([], 1, "x", None, b"", b"\xff", b'{"raw": 1e999}', b'{"raw": 1' + b"0" * 5000 + b"}", b'{"raw":' * 9000),
+    ]
+    for path in ("/predict", "/jobs", f"/jobs/{long}"):
+        for body in bodies:
+            status, told = page.ask("POST", path, body)
+            assert (status, json.loads(told).get("error", "").endswith((".", "]"))) == (400, True), (path, body, told)
+    for path in ("arm", "controller", "log"):
+        for name in (long, "x" * 300, "loop", "loop/a", "%00", "%ff", "%ED%A0%80", "..", ".", "a%20log.csv/a"):
+            assert (page.ask("GET", f"/{path}?file={name}")[0], path == "log") != (200, False), name
+    for path in (f"/{long}", "/%00", "/%ff", "/a/" + "../" * 50, "//", "/page.js/x", "/page.js?" + long):
+        assert page.ask("GET", path)[0] in (200, 400, 404, 405), path
+    for name, text in (("Range", "bytes=9-1,x"), ("If-Modified-Since", long), ("If-None-Match", long)):
+        assert page.ask("GET", "/page.js", headers={name: text})[0] in (200, 400, 416)
+    assert [one for one in caplog.records if one.exc_info] == []
+
+
 def test_a_history_from_nowhere(page: Page) -> None:
-    for tick in ("-1", "x", "4294967296", "", "١"):
+    for tick in ("-1", "x", "4294967296", "", "١", "²", "9" * 5000, "0" * 5000):
         status, body = page.ask("GET", f"/history?from={quote(tick)}")
         assert (status, "must be a tick" in json.loads(body)["error"]) == (400, True), tick
 

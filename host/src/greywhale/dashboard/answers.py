@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
-from typing import Any, TypedDict
+from typing import Any, TypedDict, TypeGuard
 
 from greywhale import __version__
 from greywhale.arm.export import JOINT_IDS, urdf
 from greywhale.arm.parameters import ArmParameters
-from greywhale.base.errors import BadUsage
+from greywhale.base.errors import BadUsage, cut
 from greywhale.base.formats import toml_file
 from greywhale.base.formats.kinds import Kind, kind_of
 from greywhale.dashboard.bench import BenchControls
@@ -22,6 +23,8 @@ from greywhale.files.arm import arm_names, load_arm
 from greywhale.files.paper_tables import controller_names, controller_path
 from greywhale.protocol import schema
 from greywhale.protocol.table import ParameterTable
+
+_TICK = re.compile("[0-9]{1,10}")
 
 
 class State(TypedDict):
@@ -57,6 +60,11 @@ class ControllerFacts(TypedDict):
     file: str
     source: str
     raw: dict[str, int]  # parameter to raw value; a parameter file has all of them
+
+
+def _is_whole(value: object) -> TypeGuard[int]:
+    """Whether it is a whole number such as a board sends; JSON's may have thousands of digits."""
+    return type(value) is int and abs(value) < 1 << 32
 
 
 def arm_facts(arm: ArmParameters) -> ArmFacts:
@@ -95,8 +103,8 @@ class Answers:
 
     def history(self, tick: str | None) -> bytes:
         """The frames of the samples kept, from a tick on if one is given."""
-        if tick is not None and not (tick.isascii() and tick.isdigit() and int(tick) < 1 << 32):
-            raise BadUsage(f"from is {tick[:20]}; it must be a tick, 0 to 4294967295.")
+        if tick is not None and not (_TICK.fullmatch(tick) and int(tick) < 1 << 32):
+            raise BadUsage(f"from is {cut(tick, 20)}; it must be a tick, 0 to 4294967295.")
         return self.relay.history.since(None if tick is None else int(tick))
 
     def describe_arm(self, file: str | None) -> ArmFacts:
@@ -104,7 +112,7 @@ class Answers:
 
     def controller(self, file: str) -> ControllerFacts:
         """The numbers of a controller.toml, or of a parameter file."""
-        path = controller_path(file) if file in controller_names() else self.folder.inside(file)
+        path = controller_path(file) if file in controller_names() else self.folder.file(file)
         if kind_of(toml_file.read(path)) is Kind.PARAMETERS:
             return {"file": file, "source": "", "raw": parameter_file.load(path).by_name()}
         loaded = controller.load(path)
@@ -112,17 +120,17 @@ class Answers:
 
     def log(self, file: str) -> bytes:
         """The samples of a log of the folder, as `samples_of_log` says."""
-        return samples_of_log(self.folder.inside(file))
+        return samples_of_log(self.folder.file(file))
 
     def predict(self, asked: dict[str, Any]) -> object:
         raw, board, file = asked.get("raw"), asked.get("board"), asked.get("file")
-        if not isinstance(raw, list) or len(raw) != len(schema.PARAMETERS) or not all(type(one) is int for one in raw):
+        if not isinstance(raw, list) or len(raw) != len(schema.PARAMETERS) or not all(map(_is_whole, raw)):
             raise BadUsage(f"raw must be {len(schema.PARAMETERS)} whole numbers, a board's parameters.")
-        if type(board) is not int or not (file is None or isinstance(file, str)):
+        if not _is_whole(board) or not (file is None or isinstance(file, str)):
             raise BadUsage("board must be a number, and file the name of an arm or a model.")
         return predict(self._arm(file), ParameterTable(tuple(raw), schema.Board.of(board)))
 
     def _arm(self, file: str | None) -> ArmParameters:
         if file is None:
             return load_arm(self.arm)
-        return load_arm(file if file in arm_names() else self.folder.inside(file))
+        return load_arm(file if file in arm_names() else self.folder.file(file))

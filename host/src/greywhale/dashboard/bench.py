@@ -35,7 +35,7 @@ class BenchControls:
             case {"motion": "reaches"}:
                 self._do("leader reaches")
             case {"motion": str(file)}:
-                self._do(f"leader {shlex.quote(str(self._folder.inside(file)))}")
+                self._do(f"leader {shlex.quote(str(self._folder.file(file)))}")
             case {"fault": None}:
                 self._do("mistake none")
             case {"fault": str(name)} if name.isprintable():  # a line is a command
@@ -63,6 +63,10 @@ class BenchControls:
 
 
 def _number(value: object) -> str:
-    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+    try:
+        number = math.nan if isinstance(value, bool) or not isinstance(value, int | float) else float(value)
+    except OverflowError:  # an integer of hundreds of digits
+        number = math.inf
+    if not math.isfinite(number):
         raise BadUsage(f"{cut(repr(value))} is no number, and the bench needs one here.")
-    return repr(float(value))
+    return repr(number)

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import TypedDict
 
-from greywhale.base.errors import BadUsage, UserError, cut
+from greywhale.base.errors import BadUsage, UserError, cut, os_reason
 from greywhale.base.formats import toml_file
 from greywhale.base.formats.kinds import kind_of
 from greywhale.files.log.layout import TITLE
@@ -33,11 +33,24 @@ class Folder:
     def inside(self, name: str) -> Path:
         """The whole path of a name; one that leads out of the folder is refused, also through a link."""
         whole = self.path / name if name and name.isprintable() else None
-        if whole is None or not whole.resolve().is_relative_to(self.path):
+        try:
+            inside = whole is not None and whole.resolve().is_relative_to(self.path)
+        except (OSError, RuntimeError):
+            raise BadUsage(f"{cut(name)}: its links lead in a circle; name another file.") from None
+        if whole is None or not inside:
             raise BadUsage(
                 f"{cut(name) or 'an empty name'}: it is not in {self.path}; name a file there, or start the dashboard "
                 "with another --folder."
             )
+        return whole
+
+    def file(self, name: str) -> Path:
+        """The same of a name that is to be read now; one that no file can have is refused."""
+        whole = self.inside(name)
+        try:
+            whole.is_file()
+        except OSError as error:
+            raise BadUsage(f"{cut(name)}: it cannot be read: {os_reason(error)}; name another file.") from None
         return whole
 
     def files(self) -> list[FileFacts]:

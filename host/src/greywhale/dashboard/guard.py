@@ -85,6 +85,8 @@ class Guard:
         """Status and sentence, None for what may come in."""
         headers: dict[bytes, bytes] = dict(scope["headers"])
         names = [name for name, _ in scope["headers"]]
+        if not scope["path"].startswith("/"):
+            return 400, "The target of a request must begin with a slash."
         if names.count(b"host") != 1 or headers[b"host"].decode("latin-1") not in self._hosts:
             return 403, "This server answers to 127.0.0.1 and localhost alone; use the address that it printed."
         origin = headers.get(b"origin")

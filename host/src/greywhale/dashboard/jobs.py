@@ -67,7 +67,8 @@ class Jobs:
         verb = next((one for one in self.verbs() if one["verb"] == name), None)
         if verb is None or not isinstance(arguments, dict):
             names = ", ".join(one["verb"] for one in self.verbs())
-            raise BadUsage(f"{cut(repr(name))} is no verb of a page; there are: {names}.")
+            said = cut(repr(name)) if isinstance(name, str) else "what is no text"
+            raise BadUsage(f"{said} is no verb of a page; there are: {names}.")
         if not system.HANDS_DOWN_DESCRIPTORS:
             raise UserError(f"a page starts no verbs on Windows; run `greywhale {name}` in a terminal.")
         words = command_line(verb, arguments, self._folder)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import json
 import socket
 from collections.abc import Awaitable, Callable
 from functools import partial
@@ -119,8 +120,10 @@ def _told(answer: Callable[[dict[str, Any]], object]) -> Callable[[Request], Awa
 async def _object(request: Request) -> dict[str, Any]:
     try:
         told = await request.json()
+        # What JSON itself does not know: NaN, infinite numbers, half of a letter.
+        await asyncio.to_thread(lambda: json.dumps(told, allow_nan=False, ensure_ascii=False).encode())
     except (ValueError, RecursionError):
         told = None
     if not isinstance(told, dict):
-        raise BadUsage("the body of the request must be a JSON object.")
+        raise BadUsage("the body of the request must be a JSON object, of text and finite numbers.")
     return told
