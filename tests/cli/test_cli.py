@@ -307,11 +307,16 @@ def test_a_log_is_replayed_with_a_warning_where_it_is_not_as_it_was_recorded(tmp
 def test_a_bad_log_leaves_no_picture(tmp_path: Path, capsys: Captured) -> None:
     write_log(tmp_path / "log.csv")
     text = (tmp_path / "log.csv").read_text()
-    (tmp_path / "log.csv").write_text(text.replace("0.100000", "inf", 1))
-    code, answer = ask(capsys, "evaluate", str(tmp_path / "log.csv"), "--picture", str(tmp_path / "p.png"))
-    assert code == 1
-    assert "line 12, column leader_0: inf is not a finite number" in answer["error"]
-    assert not (tmp_path / "p.png").exists()
+    for old, new, words in (
+        ("0.100000", "inf", "line 12, column leader_0: inf is not a finite number"),
+        ("0.999000", "inf", "line 1011, column time_s: inf is not a finite number"),
+        ("0.999000", "1e308", "line 1011, column time_s: 1e308 s is beyond 1e+10 s; times are in s"),
+    ):
+        (tmp_path / "log.csv").write_text(text.replace(old, new, 1))
+        code, answer = ask(capsys, "evaluate", str(tmp_path / "log.csv"), "--picture", str(tmp_path / "p.png"))
+        assert code == 1
+        assert words in answer["error"]
+        assert not (tmp_path / "p.png").exists()
 
 
 # --- ports, bench ---------------------------------------------------------------------------------------------------

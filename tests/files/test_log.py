@@ -156,6 +156,8 @@ def changed(folder: Path, old: str, new: str) -> Log:
     [
         ("following\n", "dancing\n", "line 12, column state: 'dancing' is not one of boot, disabled"),
         ("0.005000,", "0.000000,", "line 13, column time_s: time must increase"),
+        *[("0.010000,", f"{time},", f"line 14, column time_s: {time} ") for time in ("inf", "nan", "1e15", "1e308")],
+        ("0.005000,", "0.0000001,", "line 13, column time_s: time must increase by a microsecond"),
         ("period_ms: 20", "period_ms: \u0662\u0660", "period_ms is '\u0662\u0660' in the header"),
         ("-0.300000,", "-57.3,", "line 12, column follower_2: -57.3 rad is beyond 8 rad; logs are in rad"),
         ("0.200000,", "8.001,", "line 12, column leader_1: 8.001 rad is beyond 8 rad"),

@@ -176,6 +176,13 @@ def test_a_gap_breaks_rests_and_delays_but_not_the_mean() -> None:
     assert (gapped.duration_s, gapped.span_s) == pytest.approx((9.597, 9.999))
 
 
+@pytest.mark.parametrize("period", [1e-6, 1e9])
+def test_any_period_that_a_log_may_have_is_measured(period: float) -> None:
+    time = period * np.arange(9.0)
+    led = np.where(np.arange(9) < 4, 0.0, 1.0)
+    assert evaluate(log(time, led, led)).joints[0].mse == 0.0
+
+
 def test_nothing_to_measure_is_said() -> None:
     time = np.arange(0, 1, 0.1)
     state = np.array(["following" if row == 5 else "disabled" for row in range(10)])

@@ -52,6 +52,13 @@ def test_comments_blank_lines_and_windows_line_ends_are_taken(tmp_path: Path) ->
         ("time_s,a\n0,1_0\n", "line 2, column a: '1_0' is not a number"),
         ("time_s,a\n0,1e999\n", "line 2, column a: 1e999 is not a finite number"),
         ("time_s,a\n0,1\n\n0,1\n", "line 4, column time_s: time must increase, but 0 follows 0"),
+        (
+            "time_s,a\n0,1\n1e-7,1\n",
+            "line 3, column time_s: time must increase by a microsecond or more, but 1e-7 follows",
+        ),
+        ("time_s,a\n0,1\ninf,1\n", "line 3, column time_s: inf is not a finite number"),
+        ("time_s,a\n0,1\n1e15,1\n", "line 3, column time_s: 1e15 s is beyond 1e+10 s; times are in s"),
+        ("time_s,a\n-1e308,1\n0,1\n", "line 2, column time_s: -1e308 s is beyond 1e+10 s"),
         ('time_s,a\n0,"1"2\n', "line 2: not valid CSV"),
         (b"time_s,a\n0,\xff\n", "byte 11 is not UTF-8"),
     ],

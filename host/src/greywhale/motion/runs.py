@@ -29,7 +29,12 @@ class Run:
 
     def samples(self, seconds: float) -> int:
         """How many sampling periods `seconds` takes, rounded up."""
-        return math.ceil(seconds / self.period - 1e-9)
+        return periods(seconds, self.period)
+
+
+def periods(seconds: float, period: float) -> int:
+    """The same for a period; at least one, however long it is."""
+    return max(1, math.ceil(seconds / period - 1e-9))
 
 
 def stretches(mask: NDArray[np.bool_]) -> list[tuple[int, int]]:

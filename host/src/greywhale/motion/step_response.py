@@ -12,7 +12,6 @@ Angles are smoothed over 20 ms, so that single noisy samples are no overshoot.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
@@ -21,7 +20,7 @@ import scipy  # loads a part of itself when it is first used
 from numpy.typing import NDArray
 
 from greywhale.base.types import Floats
-from greywhale.motion.runs import REST_RAD, REST_S
+from greywhale.motion.runs import REST_RAD, REST_S, periods
 
 Bools = NDArray[np.bool_]
 
@@ -51,7 +50,7 @@ class Answer:
 
 def departures(leader: Floats, rest: Bools, period: float) -> Iterator[Departure]:
     """Every step of the leader out of a rest."""
-    rested, within = (math.ceil(seconds / period - 1e-9) for seconds in (REST_S, STEP_S))
+    rested, within = (periods(seconds, period) for seconds in (REST_S, STEP_S))
     ends = np.flatnonzero(rest[:-1] & ~rest[1:])
     for index, end in enumerate(ends):
         limit = int(ends[index + 1]) + 1 if index + 1 < len(ends) else len(leader)

@@ -22,6 +22,8 @@ from greywhale.base.formats.whole import refuse_devices
 # Bytes that are read at once; no line is longer.
 BLOCK = 1 << 22
 _BOM = b"\xef\xbb\xbf"
+# Times of recordings: three centuries, such as those since 1970, and steps of a microsecond, which decimals may round.
+_MOST_S, _LEAST_STEP_S = 1e10, 5e-7
 
 
 @dataclass(frozen=True)
@@ -47,15 +49,20 @@ class CsvTable:
         return values
 
     def increasing(self, column: str, before: float = -math.inf) -> NDArray[np.float64]:
-        """One column as strictly increasing numbers, all above `before`: a time axis."""
+        """One column as strictly increasing numbers, all above `before`: a time axis, in s."""
         values = self.numbers(column)
-        steps = np.flatnonzero(np.diff(values, prepend=before) <= 0.0)
-        if steps.size:
-            row = int(steps[0])
-            last = self.columns[column][row - 1] if row else f"{before:.6f}"
-            problem = f"time must increase, but {cut(self.columns[column][row])} follows {cut(last)}"
-            raise self.error(row, column, problem)
-        return values
+        if is_time_axis(values, before):
+            return values
+        beyond = np.flatnonzero(np.abs(values) > _MOST_S)
+        if beyond.size:
+            row = int(beyond[0])
+            raise self.error(row, column, f"{cut(self.columns[column][row])} s is beyond {_MOST_S:g} s; times are in s")
+        steps = np.diff(values, prepend=before)
+        row = int(np.flatnonzero(steps < _LEAST_STEP_S)[0])
+        last = self.columns[column][row - 1] if row else f"{before:.6f}"
+        least = " by a microsecond or more" if steps[row] > 0.0 else ""
+        problem = f"time must increase{least}, but {cut(self.columns[column][row])} follows {cut(last)}"
+        raise self.error(row, column, problem)
 
     def error(self, row: int, column: str, problem: str) -> UserError:
         return UserError(f"{self.name}, line {self.lines[row]}, column {column}: {problem}.")
@@ -167,6 +174,11 @@ class CsvFile:
 
     def _cannot_be_read(self, error: OSError) -> UserError:
         return UserError(f"{self.name}: cannot be read: {os_reason(error)}.")
+
+
+def is_time_axis(values: NDArray[np.float64], before: float) -> bool:
+    """Whether these are times of a recording, in s, that go on after `before`."""
+    return bool((np.abs(values) <= _MOST_S).all() and (np.diff(values, prepend=before) >= _LEAST_STEP_S).all())
 
 
 def is_plain(text: str) -> bool:

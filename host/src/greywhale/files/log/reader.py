@@ -177,7 +177,7 @@ def _refuse_other_period(name: str, origin: Origin, columns: _Columns) -> None:
 
 def _is_good(numbers: NDArray[np.float64], before: float) -> bool:
     """Whether time goes on, and all is within what a board can say."""
-    return bool((np.diff(numbers[:, 0], prepend=before) > 0.0).all()) and all(
+    return csv_file.is_time_axis(numbers[:, 0], before) and all(
         bool((np.abs(numbers[:, _PLACES[quantity]]) <= most).all()) for quantity, (most, _) in _MOST.items()
     )
 
