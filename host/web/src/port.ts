@@ -3,7 +3,8 @@
 /** How far something long is: what is done, and which share of it. */
 export type Report = (stage: string, share: number) => void;
 
-export type NamedText = { readonly name: string; readonly text: string };
+/** A text file; `spoiltAt` is its first byte that is not UTF-8. */
+export type NamedText = { readonly name: string; readonly text: string; readonly spoiltAt?: number };
 
 export interface BoardPort {
   /** Why this browser reaches no port, in a sentence; empty where it does. */

@@ -1,11 +1,14 @@
 // A controller.toml and a parameter file give the raw values that the host finds in them, or are refused in the host's
 // words; what the page writes, it reads.
 import assert from "node:assert/strict";
-import { readFileSync } from "node:fs";
+import { readdirSync, readFileSync } from "node:fs";
+import { join } from "node:path";
 import { test } from "node:test";
 import { controllerIn } from "../src/files/controller_file";
 import { parameterFile, parametersIn } from "../src/files/parameter_file";
+import { namedText } from "../src/files/named_text";
 import type { NamedText } from "../src/port";
+import { readImage } from "../src/sources/serial/flash/image";
 
 type Case<Raw> = { text: string; raw: Raw | null; error: string };
 
@@ -35,4 +38,21 @@ test("each parameter file is read or refused as the host does, and what is writt
   const sound = compare("PARAMETER_FILES", parametersIn).filter(({ raw }) => raw);
   assert.ok(sound.length > 5);
   for (const { raw } of sound) assert.deepEqual(parametersIn({ name: "p.toml", text: parameterFile(raw!) }), raw);
+});
+
+test("the files that the host's tests read too are taken or refused in the same words", () => {
+  const folder = process.env["BOTH"]!;
+  const words = JSON.parse(readFileSync(join(folder, "told.json"), "utf8")) as Record<string, string>;
+  const readers: Record<string, (file: NamedText) => unknown> = { controller: controllerIn, parameters: parametersIn, image: readImage };
+  assert.equal(readdirSync(folder).length, Object.keys(words).length + 1);
+  for (const [name, behind] of Object.entries(words)) {
+    const read = readers[/^[a-z]+/.exec(name)![0]]!;
+    let told = "";
+    try {
+      read(namedText(name, readFileSync(join(folder, name))));
+    } catch (error) {
+      told = (error as Error).message;
+    }
+    assert.equal(told.slice(0, behind ? name.length + behind.length : undefined), behind && name + behind);
+  }
 });

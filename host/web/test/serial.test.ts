@@ -33,13 +33,14 @@ test("a file that is no image for this board is refused in one sentence", () => 
     }
     return "";
   };
-  const other = [...new TextEncoder().encode("greywhale image\0"), 1, 0x1e, 0x93, 0x0b];
+  const other = [...new TextEncoder().encode("greywhale image\0"), 1, 0x1e, 0x93, 0x0b, ...new Uint8Array(24)];
   assert.equal(refused("time_s,leader_0\n"), "a.hex, line 1: this is no Intel HEX record; give the .hex that PlatformIO built.");
   assert.equal(refused(record(0, 0, [1]).replace("01", "02") + END).slice(0, 14), "a.hex, line 1:");
   assert.equal(refused(record(0, 0, [1])), "a.hex: the file ends too early; copy or build it again.");
   assert.equal(refused(END), "a.hex: the file holds no data; give the .hex that PlatformIO built.");
   assert.match(refused(record(30_720, 0, [1]) + END), /reaches up to byte 30721, but an Arduino Nano .* has room for 30720; choose another file/);
   assert.match(refused(record(0, 4, [0, 0x10]) + record(0, 0, [1]) + END), /data at address 0x100000; no board has as much memory/);
+  assert.equal(refused(record(0, 0, other.slice(0, -1)) + END), ""); // half of a record says nothing
   assert.match(refused(record(0, 0, other) + END), /this image is for a chip with signature 1e930b, but the board on this port is an Arduino Nano/);
 });
 

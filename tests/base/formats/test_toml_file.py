@@ -60,6 +60,7 @@ GOOD = "[[wheel]]\nradius = 0.5\n"
         ("[[wheel]]\nradius = true\n", "f.toml: wheel[0].radius is true, but it should be a valid number."),
         ("[[wheel]]\nradius = nan\n", "f.toml: wheel[0].radius is nan; it must be a finite number."),
         ("[[wheel]]\nspokes = 3\n", "f.toml: wheel[0].radius is missing."),
+        (GOOD + "spokes = 1979-05-27\n", "f.toml: wheel[0].spokes is a date or a time, but no file of greywhale holds"),
         (GOOD + "spokes = 1.5\n", "f.toml: wheel[0].spokes is 1.5, but it should be a valid integer"),
         (GOOD + "colour = 1\n", "f.toml: unknown key wheel[0].colour; remove it or check its spelling."),
         (GOOD * 3, "f.toml: wheel: "),
@@ -104,6 +105,15 @@ def test_a_refused_file_keeps_nothing_alive() -> None:
     kept = refuse()
     gc.collect()
     assert kept() is None
+
+
+def test_a_mark_that_an_editor_puts_before_the_text_is_none_of_it(tmp_path: Path) -> None:
+    path = tmp_path / "marked.toml"
+    path.write_bytes(b"\xef\xbb\xbf" + GOOD.encode())
+    assert toml_file.load(path, Cart).wheel[0].radius == 0.5
+    path.write_bytes(GOOD.replace("\n", "\r").encode())
+    with pytest.raises(UserError, match="not valid TOML"):
+        toml_file.load(path, Cart)
 
 
 def test_files_that_cannot_be_read(tmp_path: Path) -> None:

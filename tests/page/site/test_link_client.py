@@ -179,7 +179,11 @@ def test_link_client_samples_law_files_bench_and_tuner_give_what_python_gives(
     tuned = tmp_path / "tuning.json"
     tuned.write_text(json.dumps(tuning()))
     given = {"CALIBRATIONS": calibrated, "GOLDEN": golden, "LAW": law, "CONTROLLER_FILES": files, "TUNING": tuned}
-    given |= {"PARAMETER_FILES": parameters, "SITE": next(path for path in folder.iterdir() if path.is_dir())}
+    given |= {
+        "BOTH": ROOT / "tests/files/both",
+        "PARAMETER_FILES": parameters,
+        "SITE": next(path for path in folder.iterdir() if path.is_dir()),
+    }
     environment = {**os.environ, **{name: str(path) for name, path in given.items()}}
     command = [str(node() / "bin/node"), "build.mjs", "test"]
     done = subprocess.run(command, cwd=PAGE, env=environment, capture_output=True, text=True, check=False)

@@ -67,10 +67,8 @@ class JointController(toml_file.Table):
         for key, parameter, value in self.parameters():
             lowest, highest = (parameter.to_physical(raw) for raw in (parameter.minimum, parameter.maximum))
             if not lowest <= value <= highest:
-                scale = 1000.0 if key == "ku" else 1.0
-                raise ValueError(
-                    f"{key} is {value / scale:g}, but it must lie within {lowest / scale:g}..{highest / scale:g}"
-                )
+                scale, given = (1000.0, self.ku) if key == "ku" else (1.0, value)
+                raise ValueError(f"{key} is {given:g}, but it must lie within {lowest / scale:g}..{highest / scale:g}")
         return self
 
     def parameters(self, joint: int = 0) -> list[tuple[str, Parameter, float]]:

@@ -39,7 +39,7 @@ function unfit(found: TomlTable): string {
   for (const { key, parameter: { minimum, maximum, lsb }, value, scale } of entries(found, 0)) {
     const [low, high] = [minimum * lsb, maximum * lsb];
     if (!(value >= low && value <= high)) {
-      return `${key} is ${short(value / scale)}, but it must lie within ${short(low / scale)}..${short(high / scale)}`;
+      return `${key} is ${short(key === "ku" ? Number(found[key]) : value)}, but it must lie within ${short(low / scale)}..${short(high / scale)}`;
     }
   }
   return "";
@@ -68,8 +68,9 @@ const FILE = table(
 );
 
 /** Raw values by parameter name, for everything that a controller file says; an error is the host's sentence. */
-export function controllerIn({ name, text: content }: NamedText): ReadonlyMap<string, number> {
-  const data = readToml(content, name);
+export function controllerIn(file: NamedText): ReadonlyMap<string, number> {
+  const { name } = file;
+  const data = readToml(file);
   try {
     require(data, FILE, name);
   } catch (error) {

@@ -25,8 +25,9 @@ export function parameterFile(raw: readonly number[]): string {
 const NAMES = TABLE.parameters.map(({ name }) => name);
 
 /** Raw values of the whole table; a file of an older layout gets the defaults of what it lacks. An error is the host's sentence. */
-export function parametersIn({ name: file, text }: NamedText): number[] {
-  const data = readToml(text, file);
+export function parametersIn(given: NamedText): number[] {
+  const { name: file } = given;
+  const data = readToml(given);
   refuseOtherKind(data, file, "parameters");
   const found = flat(data);
   return inFile(file, () => {

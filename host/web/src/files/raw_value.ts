@@ -7,7 +7,7 @@ import { short } from "./words";
 export function rawOf({ name, lsb, unit, minimum, maximum, nonzero }: Parameter, value: number): number {
   const of = unit && ` ${unit}`;
   const advice = `choose a value from ${short(minimum * lsb)} to ${short(maximum * lsb)}${of}${nonzero ? ", other than 0" : ""}.`;
-  if (!Number.isFinite(value)) throw new LinkError(`${name} is no number, but it must be a finite one; ${advice}`);
+  if (!Number.isFinite(value)) throw new LinkError(`${name} is ${short(value)}, but it must be a finite number; ${advice}`);
   const raw = Math.floor(value / lsb + 0.5);
   if (raw >= minimum && raw <= maximum && (raw || !nonzero)) return raw;
   throw new LinkError(`${name} is ${short(value)}${of}, which is out of range; ${advice}`);

@@ -2,16 +2,26 @@
 
 import { parse, TomlError } from "smol-toml";
 import { LinkError } from "../link/declared";
+import type { NamedText } from "../port";
 import { isTable, type Path, type Toml, type TomlTable } from "./check";
+import { findMark } from "./toml_marks";
 import { cut, keyPath } from "./words";
 
-const DEEPEST = 24;
+const LONGEST = 1 << 22;
+const LARGEST = 1n << 63n;
 
 /** The content of a file: integers as bigint. */
-export function readToml(text: string, name: string): TomlTable {
+export function readToml({ name, text: whole, spoiltAt }: NamedText): TomlTable {
+  if (spoiltAt !== undefined) throw new LinkError(`${name}: byte ${spoiltAt} is not UTF-8; TOML files must be UTF-8 text.`);
+  const text = whole.replace(/^\ufeff/, "");
+  if (text.length > LONGEST && [...text].length > LONGEST) {
+    throw new LinkError(`${name}: ${[...text].length} characters; a TOML file of greywhale has at most ${LONGEST}.`);
+  }
+  const mark = findMark(text);
+  if (mark?.deep) throw new LinkError(`${name}, line ${mark.line}: ${mark.words}.`);
   let data: TomlTable;
   try {
-    data = parse(text, { integersAsBigInt: true, maxDepth: DEEPEST }) as TomlTable;
+    data = parse(whole, { integersAsBigInt: true }) as TomlTable; // it passes over one such mark itself
   } catch (error) {
     if (!(error instanceof TomlError)) throw error;
     const first = text.split("\n").find((line) => line.trim() && !line.startsWith("#")) ?? "";
@@ -19,20 +29,28 @@ export function readToml(text: string, name: string): TomlTable {
       : `${cut(error.message.split("\n")[0]!.replace("Invalid TOML document: ", ""), 200)} (at line ${error.line}, column ${error.column})`;
     throw new LinkError(`${name}: not valid TOML: ${why}.`);
   }
+  if (mark) throw new LinkError(`${name}: not valid TOML: ${mark.words} (at line ${mark.line}).`);
   if (!Object.keys(data).length) {
     throw new LinkError(`${name}: it is empty${text.trim() ? ", but for comments" : ""}; choose another file.`);
   }
-  refuseOddNumbers(data, [], name);
+  refuseOdd(data, [], name);
   return data;
 }
 
-function refuseOddNumbers(value: Toml, path: Path, name: string): void {
+/** Refuses numbers beyond any range, and dates, of which each parser has another opinion. */
+function refuseOdd(value: Toml, path: Path, name: string): void {
   if (typeof value === "number" && !Number.isFinite(value)) {
     const words = Number.isNaN(value) ? "nan" : value > 0 ? "inf" : "-inf";
     throw new LinkError(`${name}: ${keyPath(path)} is ${words}; it must be a finite number.`);
   }
-  if (Array.isArray(value)) (value as readonly Toml[]).forEach((one, place) => refuseOddNumbers(one, [...path, place], name));
-  else if (isTable(value)) for (const [key, one] of Object.entries(value)) refuseOddNumbers(one, [...path, key], name);
+  if (typeof value === "bigint" && (value > LARGEST || value < -LARGEST)) {
+    const bits = (value < 0 ? -value : value).toString(2).length;
+    const shown = bits < 1000 ? cut(String(value), 30) : `a number of ${bits} bits`;
+    throw new LinkError(`${name}: ${keyPath(path)} is ${shown}, which is out of any range.`);
+  }
+  if (value instanceof Date) throw new LinkError(`${name}: ${keyPath(path)} is a date or a time, but no file of greywhale holds one.`);
+  if (Array.isArray(value)) (value as readonly Toml[]).forEach((one, place) => refuseOdd(one, [...path, place], name));
+  else if (isTable(value)) for (const [key, one] of Object.entries(value)) refuseOdd(one, [...path, key], name);
 }
 
 const KINDS = {

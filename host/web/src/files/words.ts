@@ -9,7 +9,8 @@ const ALIKE = 0.6;
 
 /** A number with at most six digits, as "%g" writes it. */
 export function short(value: number): string {
-  if (value === 0) return "0";
+  if (!Number.isFinite(value)) return Number.isNaN(value) ? "nan" : value > 0 ? "inf" : "-inf";
+  if (value === 0) return Object.is(value, -0) ? "-0" : "0";
   const exponent = Number(value.toExponential(DIGITS - 1).split("e")[1]);
   if (exponent >= -4 && exponent < DIGITS) return String(Number(value.toPrecision(DIGITS)));
   const [digits, power] = value.toExponential(DIGITS - 1).split("e") as [string, string];
@@ -35,7 +36,7 @@ export function quoted(value: Toml): string {
 }
 
 function json(value: Toml): string {
-  if (typeof value === "number") return Number.isInteger(value) && Math.abs(value) < 1e16 ? `${value}.0` : String(value);
+  if (typeof value === "number") return float(value);
   if (typeof value === "bigint") return String(value);
   if (Array.isArray(value)) return `[${(value as readonly Toml[]).map(json).join(", ")}]`;
   if (typeof value === "object" && !(value instanceof Date)) {
@@ -43,6 +44,13 @@ function json(value: Toml): string {
   }
   const text = JSON.stringify(value instanceof Date ? value.toISOString() : value);
   return text.replace(/[^ -~]/g, (one) => `\\u${one.charCodeAt(0).toString(16).padStart(4, "0")}`);
+}
+
+/** The shortest digits that give the number again, as Python writes them. */
+function float(value: number): string {
+  const size = Math.abs(value);
+  if (value !== 0 && (size < 1e-4 || size >= 1e16)) return String(value.toExponential()).replace(/e([-+])(\d)$/, "e$10$2");
+  return `${Object.is(value, -0) ? "-0" : value}${Number.isInteger(value) ? ".0" : ""}`;
 }
 
 /** A key as people write it: joint[2].sets.Ne_c. */

@@ -1,5 +1,8 @@
 // Builds elements. Whatever is shown is set as text, never read as HTML.
 
+import { namedText } from "../files/named_text";
+import type { NamedText } from "../port";
+
 type Props = {
   readonly class?: string;
   readonly title?: string;
@@ -64,7 +67,7 @@ export function setText(node: Node, text: string): void {
 }
 
 /** A labelled field for a text file; `chosen` hears at once of each one that a person gives, null while there is none. */
-export function fileField(label: string, ending: string, chosen: (file: Promise<{ name: string; text: string }> | null) => void): HTMLLabelElement {
+export function fileField(label: string, ending: string, chosen: (file: Promise<NamedText> | null) => void): HTMLLabelElement {
   const input = el("input", { type: "file", attrs: { accept: ending } });
   input.addEventListener("click", () => { // so that the same file, mended, is taken again
     input.value = "";
@@ -72,7 +75,7 @@ export function fileField(label: string, ending: string, chosen: (file: Promise<
   });
   input.addEventListener("change", () => {
     const [file] = input.files ?? [];
-    chosen(file ? file.text().then((text) => ({ name: file.name, text })) : null);
+    chosen(file ? file.arrayBuffer().then((bytes) => namedText(file.name, new Uint8Array(bytes))) : null);
   });
   return el("label", { class: "file" }, el("span", {}, label), input);
 }

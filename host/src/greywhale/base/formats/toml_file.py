@@ -7,6 +7,7 @@ broken or malicious file has: depth, length and integers that would keep the par
 
 from __future__ import annotations
 
+import datetime
 import json
 import math
 import re
@@ -61,7 +62,7 @@ def read(path: str | Path) -> dict[str, Any]:
     """The parsed but unchecked content of a TOML file."""
     try:
         refuse_devices(path)
-        text = Path(path).read_text(encoding="utf-8")
+        text = Path(path).read_bytes().decode("utf-8")  # ends of lines as they are: the parser knows which are none
     except OSError as error:
         raise UserError(f"{path}: cannot be read: {os_reason(error)}.") from None
     except UnicodeDecodeError as error:
@@ -70,7 +71,7 @@ def read(path: str | Path) -> dict[str, Any]:
 
 
 def check(data: dict[str, Any], model: type[Model], name: str) -> Model:
-    _refuse_odd_numbers(data, name)
+    _refuse_odd_values(data, name)
     try:
         # Through JSON, so that in strict mode arrays may still become tuples, and words may become enumerations.
         return model.model_validate_json(json.dumps(data, default=str), extra="forbid")
@@ -98,6 +99,7 @@ def key_path(location: Sequence[str | int]) -> str:
 
 
 def _parse(text: str, name: str) -> dict[str, Any]:
+    text = text.removeprefix("\ufeff")  # Windows Notepad puts it there
     _refuse_depth(text, name)
     try:
         data = tomllib.loads(text)
@@ -112,7 +114,7 @@ def _parse(text: str, name: str) -> dict[str, Any]:
     if not data:
         besides = ", but for comments" if text.strip() else ""
         raise UserError(f"{name}: it is empty{besides}; choose another file.")
-    _refuse_odd_numbers(data, name)
+    _refuse_odd_values(data, name)
     return data
 
 
@@ -142,8 +144,11 @@ def _refuse_depth(text: str, name: str) -> None:
             raise UserError(f"{name}, line {line}: nested more than {_DEEPEST} deep; no file of greywhale is.")
 
 
-def _refuse_odd_numbers(data: dict[str, Any], name: str) -> None:
-    for location, value in _numbers(data, ()):
+def _refuse_odd_values(data: dict[str, Any], name: str) -> None:
+    """Refuse numbers beyond any range, and dates, of which each parser has another opinion."""
+    for location, value in _odd_values(data, ()):
+        if isinstance(value, datetime.date | datetime.time):
+            raise UserError(f"{name}: {key_path(location)} is a date or a time, but no file of greywhale holds one.")
         if isinstance(value, int) and abs(value) > _LARGEST:
             # Python writes no integer of thousands of digits, but reads one from hexadecimal digits.
             shown = cut(str(value), 30) if value.bit_length() < 1000 else f"a number of {value.bit_length()} bits"
@@ -152,14 +157,17 @@ def _refuse_odd_numbers(data: dict[str, Any], name: str) -> None:
             raise UserError(f"{name}: {key_path(location)} is {value}; it must be a finite number.")
 
 
-def _numbers(value: object, location: tuple[str | int, ...]) -> Iterator[tuple[tuple[str | int, ...], int | float]]:
+_Odd = int | float | datetime.date | datetime.time
+
+
+def _odd_values(value: object, location: tuple[str | int, ...]) -> Iterator[tuple[tuple[str | int, ...], _Odd]]:
     if isinstance(value, dict):
         for key, item in value.items():
-            yield from _numbers(item, (*location, key))
+            yield from _odd_values(item, (*location, key))
     elif isinstance(value, list):
         for index, item in enumerate(value):
-            yield from _numbers(item, (*location, index))
-    elif isinstance(value, int | float):
+            yield from _odd_values(item, (*location, index))
+    elif isinstance(value, _Odd):
         yield location, value
 
 

@@ -5,6 +5,7 @@ Every image of greywhale holds a record that firmware/src/image_record.cpp wrote
 
 from __future__ import annotations
 
+import re
 import struct
 from collections.abc import Iterator
 from dataclasses import dataclass, field
@@ -21,6 +22,7 @@ _LAYOUT = 1
 _LARGEST = 1 << 20  # bytes; no board has as much
 ERASED = b"\xff"  # a byte of memory
 
+_FORM = re.compile("(?i):([0-9a-f]{2}){5,}")
 # Types of Intel HEX records.
 _DATA, _END, _SEGMENT, _LINEAR = 0, 1, 2, 4
 
@@ -68,7 +70,7 @@ def read_pieces(path: Path) -> list[tuple[int, bytes]]:
     if not path.is_file():
         raise BadUsage(f"{path}: there is no such file; build one with `pio run`, or leave --hex out.")
     try:
-        lines = path.read_text(encoding="ascii", errors="replace").splitlines()
+        lines = re.split(r"\r\n?|\n", path.read_bytes().decode("ascii", "replace"))
     except OSError as error:
         raise BadUsage(f"{path}: cannot be read: {os_reason(error)}.") from None
     pieces: list[tuple[int, bytearray]] = []
@@ -104,9 +106,9 @@ def _records(path: Path, lines: list[str]) -> Iterator[tuple[int, bytes]]:
     """Address and bytes of each data record, until the record that ends the file."""
     base = 0
     for number, line in enumerate(lines, start=1):
-        if not line.strip():
+        if not (text := line.strip(" \t")):
             continue
-        kind, address, data = _parse(line.strip(), f"{path}, line {number}")
+        kind, address, data = _parse(text, f"{path}, line {number}")
         if kind == _DATA:
             yield base + address, data
         elif kind == _END:
@@ -117,12 +119,10 @@ def _records(path: Path, lines: list[str]) -> Iterator[tuple[int, bytes]]:
 
 
 def _parse(line: str, where: str) -> tuple[int, int, bytes]:
-    """Type, address and data of one record."""
-    try:
-        content = bytes.fromhex(line[1:])
-    except ValueError:
-        content = b""
-    if line[0] != ":" or len(content) < 5 or len(content) != content[0] + 5 or sum(content) % 256:
+    """Type, address and data of one record; one that moves the base has two bytes that say where to."""
+    content = bytes.fromhex(line[1:]) if _FORM.fullmatch(line) else b"\xff"
+    moves = len(content) > 3 and content[3] in (_SEGMENT, _LINEAR)
+    if len(content) != content[0] + 5 or sum(content) % 256 or (moves and content[0] != 2):
         raise BadUsage(f"{where}: this is no Intel HEX record; give the .hex that PlatformIO built.")
     return content[3], int.from_bytes(content[1:3], "big"), content[4:-1]
 
