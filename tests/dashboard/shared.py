@@ -2,27 +2,36 @@
 
 from __future__ import annotations
 
+import queue
 import sys
-from contextlib import nullcontext
+import threading
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, nullcontext
+from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
 
 from greywhale.board.device import Device
 from greywhale.cli.catalogue import catalogue
+from greywhale.dashboard.client import Client
 from greywhale.dashboard.folder import Folder
 from greywhale.dashboard.history import History
+from greywhale.dashboard.job import Facts
 from greywhale.dashboard.jobs import Jobs
 from greywhale.dashboard.outbox import Outbox
 from greywhale.dashboard.port_holder import turn
-from greywhale.dashboard.relay import Client, Relay
+from greywhale.dashboard.relay import Relay
 from greywhale.protocol import schema
 from greywhale.protocol.declared import Message
 from greywhale.protocol.frames import Frame, FrameDecoder, encode_frame
 
+VERB = (sys.executable, "-m", "greywhale.cli.job")
+PATIENCE_S = 120.0  # a verb that says nothing for so long hangs
 
-def jobs_of(relay: Relay, folder: Folder) -> Jobs:
+
+def jobs_of(relay: Relay, folder: Folder, program: Sequence[str] = VERB) -> Jobs:
     """As the dashboard has them, over a board whose port nobody takes."""
-    return Jobs(relay, folder, catalogue, [sys.executable, "-m", "greywhale.cli.job"], nullcontext)
+    return Jobs(relay, folder, catalogue, program, nullcontext)
 
 
 HERE_S = 0.1  # between two signs of life of a page that drives
@@ -71,7 +80,8 @@ class Viewer:
 
     def __init__(self, shared: Shared, verb: str | None = None) -> None:
         self._shared = shared
-        self.client = Client(Outbox(lambda urgent: None, most_samples=60_000), verb)
+        self.ended: list[str] = []  # why a verb was to end
+        self.client = Client(Outbox(lambda urgent: None, most_samples=60_000), verb, end=self.ended.append)
         self._sequence = 0
         self._words: list[dict[str, Any]] = []
         self._answers: list[bytes] = []
@@ -113,3 +123,45 @@ class Viewer:
                 self._answers.append(one)
             else:
                 self._words.append(one)
+
+
+class Desk:
+    """Jobs over a board, and a page that drives."""
+
+    def __init__(self, shared: Shared, folder: Path, program: Sequence[str] = VERB) -> None:
+        self.shared = shared
+        self.jobs: Jobs = jobs_of(shared.relay, Folder(folder), program)
+        self.told: queue.Queue[Facts] = queue.Queue()
+        self.jobs.listeners.append(lambda facts: self.told.put({**facts}))
+        self.page: Viewer = shared.page(0)
+        shared.relay.drive(self.page.client)
+
+    def start(self, verb: str, **arguments: Any) -> str:
+        return self.jobs.start({"verb": verb, "arguments": arguments}, self.page.client.id)["id"]
+
+    def wait(self, id: str, until: Callable[[Facts], object] = lambda facts: facts["state"] != "running") -> Facts:
+        while True:
+            facts = self.told.get(timeout=PATIENCE_S)
+            if facts["id"] == id and until(facts):
+                return facts
+
+    def run(self, verb: str, **arguments: Any) -> Facts:
+        return self.wait(self.start(verb, **arguments))
+
+
+@contextmanager
+def living(shared: Shared) -> Iterator[None]:
+    """Meanwhile the board lives in a thread."""
+    ended = threading.Event()
+
+    def live() -> None:
+        while not ended.is_set():
+            shared.turn()
+
+    thread = threading.Thread(target=live)
+    thread.start()
+    try:
+        yield
+    finally:
+        ended.set()
+        thread.join()

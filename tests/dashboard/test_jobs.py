@@ -7,8 +7,7 @@ import io
 import json
 import queue
 import sys
-import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -24,52 +23,7 @@ from greywhale.dashboard.verbs import command_line
 from greywhale.files.log import read_log
 from greywhale_sim.lockstep import LockStepBench
 from tests.cli.example_log import write_log
-from tests.dashboard.shared import Shared, Viewer, jobs_of
-
-PATIENCE_S = 120.0  # a verb that says nothing for so long hangs
-
-
-class Desk:
-    """Jobs over a board that lives in a thread, and a page that drives."""
-
-    def __init__(self, shared: Shared, folder: Path) -> None:
-        self.shared = shared
-        self.jobs: Jobs = jobs_of(shared.relay, Folder(folder))
-        self.told: queue.Queue[Facts] = queue.Queue()
-        self.jobs.listeners.append(lambda facts: self.told.put({**facts}))
-        self.page: Viewer = shared.page(0)
-        shared.relay.drive(self.page.client)
-
-    def start(self, verb: str, **arguments: Any) -> str:
-        return self.jobs.start({"verb": verb, "arguments": arguments}, self.page.client.id)["id"]
-
-    def wait(self, id: str, until: Callable[[Facts], object] = lambda facts: facts["state"] != "running") -> Facts:
-        while True:
-            facts = self.told.get(timeout=PATIENCE_S)
-            if facts["id"] == id and until(facts):
-                return facts
-
-    def run(self, verb: str, **arguments: Any) -> Facts:
-        return self.wait(self.start(verb, **arguments))
-
-
-@pytest.fixture
-def desk(shared: Shared, tmp_path: Path) -> Iterator[Desk]:
-    ended = threading.Event()
-
-    def live() -> None:
-        while not ended.is_set():
-            shared.turn()
-
-    desk = Desk(shared, tmp_path)
-    thread = threading.Thread(target=live)
-    thread.start()
-    try:
-        yield desk
-    finally:
-        desk.jobs.close()
-        ended.set()
-        thread.join()
+from tests.dashboard.shared import PATIENCE_S, Desk, Shared
 
 
 def in_a_terminal(words: list[str], folder: Path, monkeypatch: pytest.MonkeyPatch) -> tuple[int, dict[str, Any]]:

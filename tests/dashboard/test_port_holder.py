@@ -11,10 +11,11 @@ import pytest
 from greywhale.base.errors import UserError
 from greywhale.board.device import Device
 from greywhale.board.session import ask_to_stop
+from greywhale.dashboard.client import Client
 from greywhale.dashboard.history import History
 from greywhale.dashboard.outbox import Outbox
 from greywhale.dashboard.port_holder import ASK_AGAIN_S, LOOK_AGAIN_S, STOPPED, PortHolder
-from greywhale.dashboard.relay import Client, Relay
+from greywhale.dashboard.relay import Relay
 from greywhale.protocol import schema
 from greywhale.protocol.transport import open_line
 from tests.board.fake_board import FakeBoard, Faults

@@ -6,6 +6,7 @@ from collections import Counter
 
 import pytest
 
+from greywhale.base.errors import UserError
 from greywhale.dashboard.relay import ANSWER_S, LEASE_MS, SILENCE_S
 from greywhale.protocol import schema
 from greywhale.protocol.frames import FrameDecoder
@@ -143,8 +144,9 @@ def test_one_drives_until_it_lets_go(shared: Shared) -> None:
     assert second.words("driver")[-1]["free"]
     shared.relay.drive(second.client)
     assert second.words("driver")[-1]["you"]
-    assert shared.relay.drives(second.client.id)
-    assert not shared.relay.drives(first.client.id)
+    shared.relay.require(shared.relay.wish(second.client.id))
+    with pytest.raises(UserError, match="only watches"):
+        shared.relay.require(shared.relay.wish(first.client.id))
     for page in (first, second):
         shared.relay.leave(page.client)
 
@@ -164,12 +166,9 @@ def test_motors_run_as_long_as_their_page_is_there(shared: Shared) -> None:
 @pytest.mark.parametrize("how", ["leave", "release"])
 def test_motors_go_off_with_their_page(shared: Shared, how: str) -> None:
     driver, watcher = start(shared), shared.page()
-    gone: list[str] = []
-    shared.relay.on_let_go = gone.append
     shared.live(0.05)
     assert motors_on(watcher)
     getattr(shared.relay, how)(driver.client)
-    assert gone == [driver.client.id]
     shared.live(0.05)
     assert not motors_on(watcher)
 

@@ -22,10 +22,11 @@ from greywhale.board.device import Device
 from greywhale.dashboard import server
 from greywhale.dashboard.answers import Answers
 from greywhale.dashboard.bench import BenchControls
+from greywhale.dashboard.client import Client
 from greywhale.dashboard.folder import Folder
 from greywhale.dashboard.history import FRAME_BYTES, History
 from greywhale.dashboard.port_holder import turn
-from greywhale.dashboard.relay import Client, Relay
+from greywhale.dashboard.relay import Relay
 from greywhale.protocol.declared import Parameter
 from greywhale.protocol.frames import FrameDecoder
 from greywhale.protocol.schema import (

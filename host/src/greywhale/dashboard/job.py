@@ -21,8 +21,11 @@ from typing import Any, Literal, TypedDict
 
 from greywhale.base import processes
 from greywhale.base.errors import printable
-from greywhale.dashboard.lending import LentEnd
-from greywhale.dashboard.relay import Relay
+from greywhale.board.refusal import upper_first
+from greywhale.dashboard.client import Client
+from greywhale.dashboard.lending import MOST_SAMPLES, LentEnd
+from greywhale.dashboard.outbox import Outbox
+from greywhale.dashboard.relay import Relay, Wish
 
 INTERRUPTED = 130
 # A verb that was interrupted stops motors and writes its files; one that does not end by then hangs.
@@ -57,17 +60,16 @@ class Job:
         arguments: dict[str, Any],
         folder: Path,
         changed: Callable[[Job], None],
-        lender: tuple[Relay, str, str] | None = None,
+        lender: tuple[Relay, str, Wish] | None = None,
         done: Callable[[], None] | None = None,
     ) -> None:
-        """`program` takes two descriptors, a port and the verb's words; `lender` is a relay, its port and the page's id
+        """`program` takes two descriptors, a port and the verb's words; `lender` is a relay, its port and a page's wish
         for a verb that uses the board. `done` is called when a verb that has the port itself has ended.
         """
         self.facts: Facts = {
             "kind": "job", "id": secrets.token_hex(4), "verb": verb, "arguments": arguments, "state": "running",
             "progress": None, "result": None, "error": None, "exit_code": None, "said": [],
         }  # fmt: skip
-        self.page = lender[2] if lender else None  # that must be there for the job to go on
         self.uses_board = lender is not None or done is not None
         self._done = done
         self._changed = changed
@@ -77,28 +79,56 @@ class Job:
         self._wake_out, self._wake_in = socket.socketpair()
         self._wake_in.setblocking(False)
         self._line: LentEnd | None = None
-        progress, told = os.pipe()
-        handed = [told]
-        port, line = "-", "-"
-        if lender is not None:
-            port, (own, theirs) = lender[1], socket.socketpair()
-            handed.append(theirs.fileno())
-            line = str(theirs.fileno())
-            self._line = LentEnd(lender[0], own, verb, self.facts["id"], self._wake)
-        self._process = processes.start(
-            [*program, str(told), line, port, *words],
-            cwd=folder,
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
-            pass_fds=handed,
-            start_new_session=True,  # Ctrl-C in the server's terminal ends it through the server
-        )
-        os.close(told)
-        if lender is not None:
-            theirs.close()
+        self._guard = threading.Lock()  # a stop may come before there is a process
+        self._started = self._stopping = False
+        self._why = ""
+        with contextlib.ExitStack() as handed:
+            progress = self._start(program, words, folder, lender, handed)
         self._thread = threading.Thread(target=self._run, args=(progress,), name="greywhale-job", daemon=True)
         self._thread.start()
+
+    def _start(
+        self,
+        program: Sequence[str],
+        words: Sequence[str],
+        folder: Path,
+        lender: tuple[Relay, str, Wish] | None,
+        handed: contextlib.ExitStack,
+    ) -> int:
+        """Start the process; where its progress is read. `handed` closes here what the process has then."""
+        port, line = "-", "-"
+        descriptors = []
+        with contextlib.ExitStack() as failed:
+            failed.callback(self._wake_out.close)
+            failed.callback(self._wake_in.close)
+            if lender is not None:
+                relay, port, wish = lender
+                own, theirs = socket.socketpair()
+                handed.callback(theirs.close)
+                failed.callback(own.close)
+                descriptors.append(theirs.fileno())
+                line = str(theirs.fileno())
+                client = Client(Outbox(self._wake, MOST_SAMPLES), self.facts["verb"], self.facts["id"], self._interrupt)
+                self._line = LentEnd(relay, own, client, wish)  # from now on a stop, or the page's end, is heard
+                failed.callback(self._line.close)
+            progress, told = os.pipe()
+            handed.callback(os.close, told)
+            failed.callback(os.close, progress)
+            self._process = processes.start(
+                [*program, str(told), line, port, *words],
+                cwd=folder,
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.PIPE,
+                pass_fds=[*descriptors, told],
+                start_new_session=True,  # Ctrl-C in the server's terminal ends it through the server
+            )
+            failed.pop_all()
+        with self._guard:
+            self._started = True
+            if self._stopping:
+                self._process.send_signal(signal.SIGINT)
+        return progress
 
     @property
     def running(self) -> bool:
@@ -106,10 +136,18 @@ class Job:
 
     def stop(self) -> None:
         """As Ctrl-C in a terminal; by force where that does not end it."""
-        if self.running:
-            self._process.send_signal(signal.SIGINT)
+        if self._line is not None:
+            self._line.forbid()
+        self._interrupt("")
+
+    def _interrupt(self, why: str) -> None:
+        with self._guard:
+            self._why = self._why or why
+            self._stopping = True
+            if self._started and self.running:
+                self._process.send_signal(signal.SIGINT)
             self._kill_at = self._kill_at or time.monotonic() + END_WAIT_S
-            self._wake()
+        self._wake()
 
     def say(self, line: str) -> None:
         """Write a line to its standard input, from which calibrate reads its answers."""
@@ -199,8 +237,13 @@ class Job:
         except ValueError:
             answer = {"error": f"{self.facts['verb']} ended without an answer (exit code {code})."}
         failed = (isinstance(answer, dict) and "exit_code" in answer and "error" in answer) or not self._printed
+        stopped = code == INTERRUPTED or self._stopping
         self.facts["exit_code"] = code
-        self.facts["error"] = answer["error"] if failed else None
+        self.facts["error"] = self._with_reason(answer["error"]) if failed else None
         self.facts["result"] = None if failed else answer
-        self.facts["state"] = ("stopped" if code == INTERRUPTED else "failed") if failed else "done"
+        self.facts["state"] = ("stopped" if stopped else "failed") if failed else "done"
         self._changed(self)
+
+    def _with_reason(self, error: str) -> str:
+        """A verb's last words, after who stopped it."""
+        return f"{self._why} {upper_first(error)}" if self._why else error

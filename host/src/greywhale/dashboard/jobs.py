@@ -11,7 +11,7 @@ from greywhale.base import system
 from greywhale.base.errors import BadUsage, UserError, cut
 from greywhale.dashboard.folder import Folder
 from greywhale.dashboard.job import Facts, Job
-from greywhale.dashboard.relay import Relay
+from greywhale.dashboard.relay import Relay, Wish
 from greywhale.dashboard.verbs import VerbFacts, command_line
 
 MOST_RUNNING = 4
@@ -44,9 +44,9 @@ class Jobs:
         self._away = away
         self._verbs: list[VerbFacts] = []
         self._jobs: list[Job] = []
+        self._closed = False
         self._lock, self._asking = threading.Lock(), threading.Lock()
         self.listeners: list[Callable[[Facts], None]] = []
-        relay.on_let_go = self._end_of_page
 
     def listed(self) -> Listed:
         """The verbs, and the jobs so far, oldest first."""
@@ -63,6 +63,7 @@ class Jobs:
 
     def start(self, asked: dict[str, Any], page: str) -> Facts:
         """Start a verb for a page: {"verb": ..., "arguments": {...}}."""
+        wish = self._relay.wish(page)  # a stop while the rest is done comes after it
         name, arguments = asked.get("verb"), asked.get("arguments", {})
         verb = next((one for one in self.verbs() if one["verb"] == name), None)
         if verb is None or not isinstance(arguments, dict):
@@ -73,13 +74,15 @@ class Jobs:
             raise UserError(f"a page starts no verbs on Windows; run `greywhale {name}` in a terminal.")
         words = command_line(verb, arguments, self._folder)
         with self._lock, ExitStack() as failed:
+            if self._closed:
+                raise UserError("the dashboard ends; start it again.")
             if sum(job.running for job in self._jobs) >= MOST_RUNNING:
                 raise UserError(f"{MOST_RUNNING} verbs are running; wait for the end of one, or stop it.")
             port, lender, done = "", None, None
             if verb["board"]:
-                self._require_board(page, there=not verb["takes_port"])
+                self._require_board(wish, there=not verb["takes_port"])
                 port = self._relay.link["port"]
-                lender = self._relay, port, page
+                lender = self._relay, port, wish
             if verb["takes_port"]:
                 freed = failed.enter_context(ExitStack())
                 port = freed.enter_context(self._away(f"`greywhale {verb['verb']}` has the port."))
@@ -104,32 +107,27 @@ class Jobs:
         return job.facts
 
     def close(self) -> None:
-        """End all that runs, and wait for it."""
+        """End all that runs, and wait for it; nothing begins any more."""
+        with self._lock:
+            self._closed = True
         for job in self._jobs:
             job.stop()
         for job in self._jobs:
             job.join()
 
-    def _require_board(self, page: str, there: bool) -> None:
+    def _require_board(self, wish: Wish, there: bool) -> None:
         """Refuse a verb that uses the board, where it is to be `there`, or where others have it."""
         if there and not self._relay.link["open"]:
             raise UserError(self._relay.link["sentence"] or "no board is there yet.")
         if any(job.running and job.uses_board for job in self._jobs):
             raise UserError("another verb uses the board; wait for its end, or stop it.")
-        if not self._relay.drives(page):
-            raise UserError("this page only watches; let it drive first.")
+        self._relay.require(wish)
 
     def _find(self, id: str) -> Job:
         job = next((one for one in self._jobs if one.facts["id"] == id), None)
         if job is None:
             raise BadUsage(f"{cut(repr(id))} is no job of this dashboard.")
         return job
-
-    def _end_of_page(self, page: str) -> None:
-        """Nobody is there who would stop the arm: what moves it for this page ends."""
-        for job in self._jobs:
-            if job.page == page:
-                job.stop()
 
     def _tell(self, job: Job) -> None:
         for listener in list(self.listeners):

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import selectors
 import socket
-from collections.abc import Callable
 
-from greywhale.dashboard.outbox import Outbox
-from greywhale.dashboard.relay import Client, Relay
+from greywhale.dashboard.client import Client
+from greywhale.dashboard.relay import Relay, Wish
 
 # A verb may compute for a minute before it reads; it loses no sample that a port would have kept.
 MOST_SAMPLES = 60_000
@@ -17,17 +16,19 @@ _PIECE = 65536
 class LentEnd:
     """Never waits: whoever calls it selects on `connection`."""
 
-    def __init__(
-        self, relay: Relay, connection: socket.socket, verb: str, job: str, wake: Callable[[bool], None]
-    ) -> None:
-        """`wake` is called, from any thread, when something waits for the verb."""
+    def __init__(self, relay: Relay, connection: socket.socket, client: Client, wish: Wish) -> None:
+        """A UserError says why the verb, a client that may get `MOST_SAMPLES`, is not to begin."""
         self._relay = relay
         self._connection = connection
         connection.setblocking(False)
-        self._client = Client(Outbox(wake, MOST_SAMPLES), verb, job)
+        self._client = client
         self._waiting = b""
         self._open = True
-        relay.join(self._client)
+        relay.join(client, wish)
+
+    def forbid(self) -> None:
+        """The verb is stopped: it starts no motor from now on."""
+        self._relay.forbid(self._client)
 
     def register(self, selector: selectors.BaseSelector) -> None:
         selector.register(self._connection, selectors.EVENT_READ)

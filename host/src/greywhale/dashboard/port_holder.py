@@ -114,6 +114,7 @@ class PortHolder:
                 turn(self._relay, line, session)
                 line.wait(ROUND_S)
         except StopAsked:
+            self._relay.stopped("with `greywhale stop` in another terminal")
             self._relay.close(port, STOPPED)
             raise
         except UserError as error:

@@ -8,7 +8,6 @@ reaches the board. Time is that of the line, so a simulated board may live faste
 from __future__ import annotations
 
 import contextlib
-import secrets
 import threading
 from collections import deque
 from collections.abc import Callable
@@ -17,8 +16,9 @@ from typing import NamedTuple
 from greywhale.base.errors import UserError
 from greywhale.board.device import stop_message
 from greywhale.board.refusal import upper_first
+from greywhale.dashboard.client import STARTS, Client
 from greywhale.dashboard.history import History
-from greywhale.dashboard.outbox import Message, Outbox
+from greywhale.dashboard.outbox import Message
 from greywhale.dashboard.stored import StoredSet
 from greywhale.protocol import schema
 from greywhale.protocol.frames import Frame, FrameDecoder, encode_frame
@@ -43,25 +43,9 @@ MOST_WAITING = 255  # requests; clients ask again for those that a flood of them
 
 # What changes nothing, and what must always get through.
 _FOR_ALL = {schema.HelloRequest.TYPE, schema.StatusRequest.TYPE, schema.ParamGetRequest.TYPE, schema.StopRequest.TYPE}
-_LEASES = {schema.EnableRequest.TYPE, schema.LeadRequest.TYPE, schema.RenewRequest.TYPE}
-_STARTS = {schema.EnableRequest.TYPE, schema.LeadRequest.TYPE}
+_LEASES = {*STARTS, schema.RenewRequest.TYPE}
 _AT_REST = (schema.State.DISABLED, schema.State.FAULT)
 _STATE = 4  # place of the state in a sample's payload
-
-
-class Client:
-    """One who shares the board. `verb` marks a verb that runs for a page, the job `id`: it keeps its lease itself.
-
-    A verb's outbox gets a message in words once: when the board is gone.
-    """
-
-    def __init__(self, outbox: Outbox, verb: str | None = None, id: str | None = None) -> None:
-        self.id = id or secrets.token_hex(8)
-        self.outbox = outbox
-        self.verb = verb
-        self.every = 0  # ticks between the samples it gets; 0: none
-        self.seen_s = 0.0
-        self.decoder = FrameDecoder()
 
 
 class _Asked(NamedTuple):
@@ -76,6 +60,13 @@ class _Open(NamedTuple):
     line: Line
     port: str
     may_move: Callable[[], None]  # raises where motors must not start
+
+
+class Wish(NamedTuple):
+    """What a page asked for at a time: to start a verb."""
+
+    page: str
+    stops: int  # before it
 
 
 class Relay:
@@ -99,7 +90,7 @@ class Relay:
         self._motors: Client | None = None  # the page for which they run
         self._confirmed = False  # that they do
         self._renewed_s = self._heard_s = 0.0
-        self.on_let_go: Callable[[str], None] = lambda page: None  # called with a page's id when it drives no more
+        self._stops = 0  # asked for by people
         self._asked_again = self._told_silent = False
 
     # --- the board --------------------------------------------------------------------------------------------------
@@ -168,8 +159,26 @@ class Relay:
 
     # --- clients ----------------------------------------------------------------------------------------------------
 
-    def join(self, client: Client) -> None:
+    def wish(self, page: str) -> Wish:
+        """A page asks now for a verb."""
         with self._lock:
+            return Wish(page, self._stops)
+
+    def require(self, wish: Wish) -> None:
+        """Refuse a verb whose page drives no more, or that a stop has overtaken."""
+        with self._lock:
+            if self._driver is None or self._driver.id != wish.page:
+                raise UserError("this page only watches; let it drive first.")
+            if self._stops != wish.stops:
+                raise UserError("a stop came while the verb began; start the verb again.")
+
+    def join(self, client: Client, wish: Wish | None = None) -> None:
+        """A client begins; a verb with the `wish` for which it runs."""
+        with self._lock:
+            if wish is not None:
+                self.require(wish)
+                if self._verb is not None:
+                    raise UserError("another verb uses the board; wait for its end, or stop it.")
             self._clients.append(client)
             if client.verb is None:
                 client.outbox.add_answer({"kind": "page", "id": client.id})
@@ -207,12 +216,21 @@ class Relay:
                 self._driver = None
                 if self._motors is client or self._verb is not None:
                     self._stop()
+                if self._verb is not None:
+                    self._verb.stop("The page that drove has let go: start the verb again from a page that drives.")
                 self._tell_drivers()
-                self.on_let_go(client.id)
 
-    def drives(self, page: str) -> bool:
+    def forbid(self, client: Client) -> None:
+        """A verb is stopped by itself: it starts no motor from now on."""
         with self._lock:
-            return self._driver is not None and self._driver.id == page
+            client.forbid()
+
+    def stopped(self, where: str) -> None:
+        """A person stopped the arm, there: what was asked for before starts no motor any more, and a verb ends."""
+        with self._lock:
+            self._stops += 1
+            for client in self._clients:
+                client.stop(f"Stopped {where}: start the verb again when the arm may move.")
 
     def seen(self, client: Client) -> None:
         """A sign of life."""
@@ -239,37 +257,54 @@ class Relay:
             self._ask_for_samples(1)
 
     def _request(self, client: Client, frame: Frame) -> None:
-        if self._board is None:
-            self._refuse(client, self._link["sentence"] or "no board is there yet.", frame)
+        client.note(frame)
+        if frame.type == schema.StopRequest.TYPE:
+            self._stop_for(client, frame)
+        elif self._board is None:
+            self._refuse(client, self._no_board(), frame)
         elif frame.type == schema.TelemetryRequest.TYPE and len(frame.payload) == schema.TelemetryRequest.SIZE:
             client.every = int.from_bytes(frame.payload, "little")
             client.outbox.add_answer(encode_frame(schema.TelemetryReply.TYPE, frame.seq, frame.payload))
-        elif frame.type == schema.StopRequest.TYPE:
-            self._motors = None
-            self._write(stop_message(self._number(_Asked(client, frame.type, frame.seq))))
         elif problem := self._why_not(client, frame):
             self._refuse(client, problem, frame)
         else:
             self._forward(client, frame)
+
+    def _stop_for(self, client: Client, frame: Frame) -> None:
+        """Motors off. What a page stops, stays so; a verb stops only what it started itself."""
+        if self._board is not None:
+            self._stop(client, frame.seq)
+        else:
+            self._refuse(client, self._no_board(), frame)
+        if client.verb is None:
+            self.stopped("from the page that drives" if client is self._driver else "from a page that watches")
+
+    def _no_board(self) -> str:
+        return self._link["sentence"] or "no board is there yet."
 
     def _why_not(self, client: Client, frame: Frame) -> str:
         """Why a request may not go on, in a sentence."""
         assert self._board is not None
         if self._board.line.clock() > self._heard_s + TOLD_S:
             return "the board is silent; perhaps it has just restarted."
-        if frame.type in _FOR_ALL or client.verb is not None:
+        if frame.type in _FOR_ALL:
             return ""
-        if self._verb is not None:
+        if client.verb is None and self._verb is not None:
             return f"`greywhale {self._verb.verb}` uses the board; stop it first, or wait for its end."
-        if self._driver is not client:
+        if client.verb is None and self._driver is not client:
             return "this page only watches; let it drive first."
-        if frame.type in _STARTS:
-            try:
-                self._board.may_move()
-            except UserError as error:
-                return error.message
-            except KeyboardInterrupt:  # a stop was asked for elsewhere; who holds the port tells more
-                return "the motors stay off: a stop was asked for in another terminal."
+        return self._why_no_start(client, frame) if frame.type in STARTS else ""
+
+    def _why_no_start(self, client: Client, frame: Frame) -> str:
+        assert self._board is not None
+        if problem := client.refuses(frame):
+            return problem
+        try:
+            self._board.may_move()
+        except UserError as error:
+            return error.message if client.verb is None else ""  # a verb has its own session
+        except KeyboardInterrupt:  # a stop was asked for elsewhere; who holds the port tells more
+            return "the motors stay off: a stop was asked for in another terminal."
         return ""
 
     def _refuse(self, client: Client, sentence: str, frame: Frame | None = None) -> None:
@@ -282,11 +317,11 @@ class Relay:
         payload = frame.payload
         if client.verb is None and frame.type in _LEASES and len(payload) == schema.EnableRequest.SIZE:
             payload = schema.EnableRequest(LEASE_MS).pack()
-            if frame.type in _STARTS:
+            if frame.type in STARTS:
                 self._motors, self._confirmed = client, False
                 self._renewed_s = client.seen_s
         asked = _Asked(client, frame.type, frame.seq)
-        if frame.type in _STARTS:  # a stop that comes behind it must find it sent
+        if frame.type in STARTS:  # a stop that comes behind it must find it sent
             self._send(asked, payload)
         else:
             self._send_soon(asked, payload)
@@ -332,10 +367,10 @@ class Relay:
         self._asked_again = False
         self._ask_for_samples(1)
 
-    def _stop(self) -> None:
+    def _stop(self, client: Client | None = None, seq: int = 0) -> None:
         self._motors = None
         if self._board is not None:
-            self._write(stop_message(self._number(_Asked(None, schema.StopRequest.TYPE, 0))))
+            self._write(stop_message(self._number(_Asked(client, schema.StopRequest.TYPE, seq))))
 
     def _pass_answer(self, frame: Frame) -> None:
         asked = self._asked.get(frame.seq)
@@ -348,7 +383,7 @@ class Relay:
             self._on_its_way = None
             self._send_next()
         if asked.client is not None:
-            if asked.client is self._motors and asked.type in _STARTS:
+            if asked.client is self._motors and asked.type in STARTS:
                 self._confirmed = True
                 self._motors = None if refused else self._motors
             asked.client.outbox.add_answer(encode_frame(frame.type, asked.seq, frame.payload))

@@ -9,11 +9,12 @@ from collections.abc import Callable
 
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
+from greywhale.dashboard.client import Client
 from greywhale.dashboard.guard import SUBPROTOCOL, Bucket
 from greywhale.dashboard.job import Facts
 from greywhale.dashboard.jobs import Jobs
 from greywhale.dashboard.outbox import Outbox
-from greywhale.dashboard.relay import Client, Relay
+from greywhale.dashboard.relay import Relay
 
 # Samples of so long go out in one message.
 BATCH_S = 0.02
