@@ -91,7 +91,7 @@ class Jobs:
             line = [*words[: words.index("--")], *options, *words[words.index("--") :]]
             job = Job(self._program, verb["verb"], line, arguments, self._folder.path, self._tell, lender, done)
             failed.pop_all()
-            self._jobs = [*self._jobs, job][-MOST_KEPT:]
+            self._keep(job)
         return job.facts
 
     def stop(self, id: str) -> Facts:
@@ -114,6 +114,12 @@ class Jobs:
             job.stop()
         for job in self._jobs:
             job.join()
+
+    def _keep(self, job: Job) -> None:
+        """List a job; of the others the oldest that have ended are forgotten."""
+        ended = [one for one in self._jobs if not one.running]
+        forgotten = ended[: max(0, len(self._jobs) + 1 - MOST_KEPT)]
+        self._jobs = [*(one for one in self._jobs if one not in forgotten), job]
 
     def _require_board(self, wish: Wish, there: bool) -> None:
         """Refuse a verb that uses the board, where it is to be `there`, or where others have it."""
