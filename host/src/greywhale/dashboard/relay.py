@@ -7,18 +7,16 @@ reaches the board. Time is that of the line, so a simulated board may live faste
 
 from __future__ import annotations
 
-import contextlib
 import threading
-from collections import deque
 from collections.abc import Callable
 from typing import NamedTuple
 
 from greywhale.base.errors import UserError
-from greywhale.board.device import stop_message
 from greywhale.board.refusal import upper_first
 from greywhale.dashboard.client import STARTS, Client
 from greywhale.dashboard.history import History
 from greywhale.dashboard.outbox import Message
+from greywhale.dashboard.requests import Asked, Requests
 from greywhale.dashboard.stored import StoredSet
 from greywhale.protocol import schema
 from greywhale.protocol.frames import Frame, FrameDecoder, encode_frame
@@ -36,24 +34,12 @@ QUIET_S = 0.1
 TOLD_S = 0.5
 ASK_AGAIN_S = 6.0
 GIVE_UP_S = 7.0
-# While a board with its motors on answers a request, a second one may cost a sample: its tick leaves little time. So
-# one is on its way, and the next waits for its answer, but not longer than this: then it was lost.
-ANSWER_S = 0.03
-MOST_WAITING = 255  # requests; clients ask again for those that a flood of them pushes out
 
 # What changes nothing, and what must always get through.
 _FOR_ALL = {schema.HelloRequest.TYPE, schema.StatusRequest.TYPE, schema.ParamGetRequest.TYPE, schema.StopRequest.TYPE}
 _LEASES = {*STARTS, schema.RenewRequest.TYPE}
 _AT_REST = (schema.State.DISABLED, schema.State.FAULT)
 _STATE = 4  # place of the state in a sample's payload
-
-
-class _Asked(NamedTuple):
-    """Whose request a sequence number of the relay stands for; None: the relay's own."""
-
-    client: Client | None
-    type: int
-    seq: int
 
 
 class _Open(NamedTuple):
@@ -82,11 +68,7 @@ class Relay:
         self._link: Message = {"kind": "link", "open": False, "port": "", "sentence": ""}
         self._stored = StoredSet()
         self._decoder = FrameDecoder()
-        self._asked: dict[int, _Asked] = {}
-        self._sequence = 0
-        self._waiting: deque[tuple[_Asked, bytes]] = deque(maxlen=MOST_WAITING)  # requests, with their payloads
-        self._on_its_way: int | None = None  # the number of the last that was sent, until its answer
-        self._sent_s = 0.0
+        self._requests = Requests()
         self._motors: Client | None = None  # the page for which they run
         self._confirmed = False  # that they do
         self._renewed_s = self._heard_s = 0.0
@@ -106,7 +88,7 @@ class Relay:
             self._board = _Open(line, port, may_move)
             self._decoder = FrameDecoder()
             self._stored = StoredSet()
-            self._forget_requests()
+            self._requests.begin(line)
             self._motors = None
             self._told_silent = False
             self._want_samples()
@@ -143,9 +125,7 @@ class Relay:
             if self._board is None:
                 return
             now_s = self._board.line.clock()
-            if now_s > self._sent_s + ANSWER_S:
-                self._on_its_way = None
-            self._send_next()
+            self._requests.look(now_s)
             self._look_for_samples(now_s - self._heard_s)
             page = self._motors
             if page is None:
@@ -155,7 +135,7 @@ class Relay:
                 self._refuse(page, "the motors are off: the page that drives fell silent.")
             elif now_s >= self._renewed_s + RENEW_S and now_s <= self._heard_s + QUIET_S:
                 self._renewed_s = now_s
-                self._send_soon(_Asked(None, schema.RenewRequest.TYPE, 0), schema.RenewRequest(LEASE_MS).pack())
+                self._requests.send_soon(Asked(schema.RenewRequest.TYPE), schema.RenewRequest(LEASE_MS).pack())
 
     # --- clients ----------------------------------------------------------------------------------------------------
 
@@ -277,7 +257,8 @@ class Relay:
         else:
             self._refuse(client, self._no_board(), frame)
         if client.verb is None:
-            self.stopped("from the page that drives" if client is self._driver else "from a page that watches")
+            where = "from the page that drives" if client is self._driver else "from a page that watches"
+            self.stopped(where)
 
     def _no_board(self) -> str:
         return self._link["sentence"] or "no board is there yet."
@@ -320,46 +301,14 @@ class Relay:
             if frame.type in STARTS:
                 self._motors, self._confirmed = client, False
                 self._renewed_s = client.seen_s
-        asked = _Asked(client, frame.type, frame.seq)
+        asked = Asked(frame.type, client, frame.seq)
         if frame.type in STARTS:  # a stop that comes behind it must find it sent
-            self._send(asked, payload)
+            self._requests.send(asked, payload)
         else:
-            self._send_soon(asked, payload)
-
-    def _send_soon(self, asked: _Asked, payload: bytes) -> None:
-        """Send a request when the one before is answered; one that renews a lease goes before all others."""
-        if asked.type == schema.RenewRequest.TYPE:
-            self._waiting.appendleft((asked, payload))
-        else:
-            self._waiting.append((asked, payload))
-        self._send_next()
-
-    def _send_next(self) -> None:
-        if self._waiting and self._on_its_way is None:
-            self._send(*self._waiting.popleft())
-
-    def _send(self, asked: _Asked, payload: bytes) -> None:
-        self._write(encode_frame(asked.type, self._number(asked), payload))
-
-    def _forget_requests(self) -> None:
-        self._asked.clear()
-        self._waiting.clear()
-        self._on_its_way = None
-
-    def _write(self, data: bytes) -> None:
-        assert self._board is not None
-        with contextlib.suppress(UserError):  # who holds the port finds out by itself that it went away
-            self._board.line.write(data)
-
-    def _number(self, asked: _Asked) -> int:
-        assert self._board is not None
-        self._sequence = self._sequence % 255 + 1
-        self._asked[self._sequence] = asked
-        self._on_its_way, self._sent_s = self._sequence, self._board.line.clock()
-        return self._sequence
+            self._requests.send_soon(asked, payload)
 
     def _ask_for_samples(self, every: int) -> None:
-        self._send(_Asked(None, schema.TelemetryRequest.TYPE, 0), schema.TelemetryRequest(every).pack())
+        self._requests.send(Asked(schema.TelemetryRequest.TYPE), schema.TelemetryRequest(every).pack())
 
     def _want_samples(self) -> None:
         assert self._board is not None
@@ -370,23 +319,16 @@ class Relay:
     def _stop(self, client: Client | None = None, seq: int = 0) -> None:
         self._motors = None
         if self._board is not None:
-            self._write(stop_message(self._number(_Asked(client, schema.StopRequest.TYPE, seq))))
+            self._requests.send_stop(client, seq)
 
     def _pass_answer(self, frame: Frame) -> None:
-        asked = self._asked.get(frame.seq)
-        if asked is None:
+        asked = self._requests.answered(frame)
+        if asked is None or asked.client is None:
             return
-        refused = frame.type == schema.Nack.TYPE
-        if not refused and frame.type != asked.type | schema.REPLY_BIT:
-            return
-        if frame.seq == self._on_its_way:
-            self._on_its_way = None
-            self._send_next()
-        if asked.client is not None:
-            if asked.client is self._motors and asked.type in STARTS:
-                self._confirmed = True
-                self._motors = None if refused else self._motors
-            asked.client.outbox.add_answer(encode_frame(frame.type, asked.seq, frame.payload))
+        if asked.client is self._motors and asked.type in STARTS:
+            self._confirmed = True
+            self._motors = None if frame.type == schema.Nack.TYPE else self._motors
+        asked.client.outbox.add_answer(encode_frame(frame.type, asked.seq, frame.payload))
 
     def _pass_sample(self, frame: Frame, wire: bytes) -> None:
         assert self._board is not None
@@ -410,7 +352,7 @@ class Relay:
         assert self._board is not None
         self._motors = None
         self._told_silent = False
-        self._forget_requests()
+        self._requests.forget()
         for client in self._clients:
             client.outbox.add_answer(wire)
         self._want_samples()
