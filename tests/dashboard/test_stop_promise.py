@@ -62,6 +62,8 @@ def test_a_verb_that_a_page_stopped_starts_no_motor_any_more(shared: Shared, who
     shared.live(0.05)
     assert (schema.StopReply.TYPE, stop) in [(one.type, one.seq) for one in page.answers()]
     assert verb.ended == [f"Stopped from {who}: {AGAIN}"]
+    told = [bool(one.words("stopped")) for one in (driver, watcher)]
+    assert told == [page is watcher, page is driver], "all pages but the one that stopped it"
     watcher.raw()
     verb.answers()
     for request in 5 * STARTS:

@@ -14,6 +14,8 @@ export type BoardListener = {
   stored(crc: number | null): void;
   /** A frame that did not reach the board, and why. */
   refused(seq: number, type: number, sentence: string): void;
+  /** Somebody else stopped the arm. */
+  stopped(sentence: string): void;
 };
 
 /**

@@ -40,7 +40,7 @@ export class Session {
   storedCrc: number | null = null;
   private readonly known = new Map<number, readonly number[]>(); // sets by their CRC
   notice: Notice | null = null;
-  /** How often a stop was asked for since the page was opened. */
+  /** How often a stop was asked for since the page was opened, here or elsewhere. */
   stopsAsked = 0;
   /** Whether the samples from before are here; until then new ones wait. */
   private waiting: Uint8Array[] | null = [];
@@ -65,6 +65,10 @@ export class Session {
       refused: (seq, type, sentence) => {
         this.client.refuse(seq, type, sentence);
         if (!type) this.tell(sentence);
+      },
+      stopped: (sentence) => {
+        this.stopsAsked++;
+        this.tell(sentence, "info");
       },
     });
     setInterval(() => void this.askStatus(), STATUS_EVERY_MS);
@@ -156,6 +160,15 @@ export class Session {
     this.stopsAsked++;
     await this.client.ask(StopRequest, {});
     await this.askStatus();
+  }
+
+  /** Does something with the motors off. Those that ran start again, unless a person stops them meanwhile. */
+  async withMotorsOff(act: () => Promise<void>): Promise<void> {
+    const running = this.motorsOn;
+    const stops = this.stopsAsked + Number(running);
+    if (running) await this.stop();
+    await act();
+    if (running && this.stopsAsked === stops) await this.enable();
   }
 
   /** Starts the motors with the page in the leader's place, for so long at most, and sends one point: where it begins, and the step. */

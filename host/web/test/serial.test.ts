@@ -65,6 +65,6 @@ test("a browser without serial ports is told so", () => {
   const told: LinkState[] = [];
   const nothing = (): void => undefined;
   new SerialBoard(undefined, async (name) => ({ name, text: "" }))
-    .listen({ bytes: nothing, driver: nothing, stored: nothing, refused: nothing, link: (state) => told.push(state) });
+    .listen({ bytes: nothing, driver: nothing, stored: nothing, refused: nothing, stopped: nothing, link: (state) => told.push(state) });
   assert.match(told[0]!.sentence, /^This browser reaches no serial port: take a recent Chromium/);
 });

@@ -4,7 +4,8 @@ import { test } from "node:test";
 import type { Board, BoardListener } from "../src/board";
 import { encodeFrame, FrameDecoder } from "../src/link/frames";
 import {
-  HelloReply, HelloRequest, ParamGetReply, ParamGetRequest, SCHEMA_HASH, StatusReply, StatusRequest, TABLE, TelemetryReply, TelemetryRequest,
+  EnableReply, EnableRequest, HelloReply, HelloRequest, ParamGetReply, ParamGetRequest, SCHEMA_HASH, State, StatusReply, StatusRequest, StopReply, StopRequest, TABLE,
+  TelemetryReply, TelemetryRequest,
 } from "../src/link/schema";
 import { Session } from "../src/session";
 
@@ -52,3 +53,36 @@ test("a set that another program stored is shown, whichever tells of it first: i
   await settled();
   assert.deepEqual(shown, { nothing: false, stored: values[0] });
 });
+
+for (const who of ["nobody", "another page", "this page"]) {
+  test(`motors that are off for a change ${who === "nobody" ? "" : "do not "}start again when ${who} stops them meanwhile`, async ({ mock }) => {
+    mock.timers.enable({ apis: ["setInterval", "setTimeout"] });
+    const asked: number[] = [];
+    let state: number = State.is.following;
+    let heard!: BoardListener;
+    const session = new Session({
+      listen: (listener) => { heard = listener; },
+      send: (frame) => new FrameDecoder().feed(frame, ({ type, seq }) => {
+        asked.push(type);
+        if (type === StopRequest.type) state = State.is.disabled;
+        const status = StatusReply.pack({ ...StatusReply.unpack(zeros(StatusReply.size)), state });
+        const reply = type === StatusRequest.type ? status : zeros(type === StopRequest.type ? StopReply.size : EnableReply.size);
+        queueMicrotask(() => heard.bytes(encodeFrame(type | 0x80, seq, reply)));
+      }),
+      drive: () => undefined,
+      release: () => undefined,
+      history: () => Promise.resolve(zeros(0)),
+    });
+    heard.driver({ you: true, free: false, verb: null });
+    session.link = { open: true, port: "here", sentence: "" };
+    mock.timers.tick(500);
+    await settled();
+    assert.ok(session.motorsOn);
+    await session.withMotorsOff(async () => {
+      assert.ok(!session.motorsOn);
+      if (who === "another page") heard.stopped("The arm was stopped from a page that watches.");
+      if (who === "this page") await session.stop();
+    });
+    assert.equal(asked.includes(EnableRequest.type), who === "nobody");
+  });
+}

@@ -205,12 +205,18 @@ class Relay:
         with self._lock:
             client.forbid()
 
-    def stopped(self, where: str) -> None:
-        """A person stopped the arm, there: what was asked for before starts no motor any more, and a verb ends."""
+    def stopped(self, where: str, by: Client | None = None) -> None:
+        """A person stopped the arm, there: what was asked for before starts no motor any more, and a verb ends.
+
+        All pages but the one by which it was stopped are told: one may be about to start the motors again.
+        """
         with self._lock:
             self._stops += 1
             for client in self._clients:
                 client.stop(f"Stopped {where}: start the verb again when the arm may move.")
+            for page in self._pages():
+                if page is not by:
+                    page.outbox.add_answer({"kind": "stopped", "sentence": f"The arm was stopped {where}."})
 
     def seen(self, client: Client) -> None:
         """A sign of life."""
@@ -258,7 +264,7 @@ class Relay:
             self._refuse(client, self._no_board(), frame)
         if client.verb is None:
             where = "from the page that drives" if client is self._driver else "from a page that watches"
-            self.stopped(where)
+            self.stopped(where, client)
 
     def _no_board(self) -> str:
         return self._link["sentence"] or "no board is there yet."

@@ -168,10 +168,7 @@ export class ControllerView implements View {
   private async apply(): Promise<void> {
     const { draft, session } = this;
     if (!draft) return;
-    const running = session.motorsOn;
-    if (running) await session.stop();
-    await session.apply(withJoints(await session.readParameters(), draft.joints));
-    if (running) await session.enable();
+    await session.withMotorsOff(async () => session.apply(withJoints(await session.readParameters(), draft.joints)));
   }
 
   /** Puts the other of A and B in place of the edited one, and runs it. */

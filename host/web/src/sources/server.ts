@@ -10,6 +10,7 @@ type Told =
   | { kind: "driver"; you: boolean; free: boolean; verb: string | null }
   | { kind: "stored"; crc: number | null }
   | { kind: "refused"; sentence: string; seq?: number; type?: number }
+  | { kind: "stopped"; sentence: string }
   | { kind: "page"; id: string };
 
 export class ServerBoard implements Board {
@@ -86,6 +87,9 @@ export class ServerBoard implements Board {
         break;
       case "refused":
         this.listener?.refused(message.seq ?? 0, message.type ?? 0, message.sentence);
+        break;
+      case "stopped":
+        this.listener?.stopped(message.sentence);
         break;
     }
   }
