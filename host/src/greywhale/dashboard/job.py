@@ -245,5 +245,5 @@ class Job:
         self._changed(self)
 
     def _with_reason(self, error: str) -> str:
-        """A verb's last words, after who stopped it."""
-        return f"{self._why} {upper_first(error)}" if self._why else error
+        """A verb's last words, after who stopped it; one that was stopped while Python began has none."""
+        return " ".join([self._why, *([upper_first(error)] if self._printed else [])]) if self._why else error
