@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import ast
+import runpy
 import shutil
+import sys
 import sysconfig
 from pathlib import Path
 
 import pytest
 
+from tools import ROOT
 from tools.setup import system
 from tools.setup.console import SetupError
 
@@ -58,3 +62,12 @@ def test_a_user_without_sudo_is_told_the_command(programs: set[str], monkeypatch
     monkeypatch.setattr("os.geteuid", lambda: 1000)
     with pytest.raises(SetupError, match="no sudo to install them with: run `apt-get install g\\+\\+ lld` as root"):
         system.as_root(["apt-get", "install"], ["g++", "lld"])
+
+
+def test_an_older_python_is_named_by_itself(monkeypatch: pytest.MonkeyPatch) -> None:
+    package = ROOT / "tools" / "setup" / "__init__.py"
+    for place in (ROOT / "tools" / "__init__.py", package):
+        ast.parse(place.read_text(encoding="utf-8"), feature_version=(3, 6))  # it must get so far
+    monkeypatch.setattr(sys, "version_info", (3, 10, 13))
+    with pytest.raises(SystemExit, match="greywhale needs Python 3.11 or newer, but /"):
+        runpy.run_path(str(package))

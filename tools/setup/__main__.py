@@ -15,10 +15,6 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 from tools import ROOT
-
-if sys.version_info < (3, 11):  # noqa: UP036 (an older Python is what this is about)
-    sys.exit(f"greywhale needs Python 3.11 or newer, but {sys.executable} is {sys.version.split()[0]}.")
-
 from tools.setup import extensions, firmware, page, page_modules, platformio, system, venv
 from tools.setup.console import SetupError, say, side_by_side
 
