@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from tools import ROOT
-from tools.setup import stamps, venv
+from tools.setup import stamps, system, venv
 from tools.setup.console import run, say
 
 WHEELS = ROOT / "build" / "editable"
@@ -72,7 +72,9 @@ def build(checks: bool) -> None:
             old.unlink()
         setting = ("cmake.define.GREYWHALE_WERROR", "ON" if checks else "OFF")
         command: list[str | Path] = [venv.PYTHON, "-c", BUILD, package.wheels, *setting]
-        run(command, what=f"Building {package.name}", env=venv.environment(), cwd=package.place)
+        # Else the compiler that Python itself was built with is taken, which may not be here.
+        compiler = {"CXX": system.cxx_compiler() or "c++"}
+        run(command, what=f"Building {package.name}", env={**venv.environment(), **compiler}, cwd=package.place)
 
 
 def install(checks: bool) -> None:

@@ -32,10 +32,15 @@ AVR_COMPILER = ("gcc-avr", "avr-libc", "binutils-avr")
 PROGRAMS_FOR_CHECKS = ("avr-gcc", "cppcheck", "clang-tidy", "clang++", "chromium", "wasm-ld")
 
 
+def cxx_compiler() -> str | None:
+    """The C++ compiler that is there."""
+    return os.environ.get("CXX") or next(filter(None, map(shutil.which, CXX_COMPILERS)), None)
+
+
 def lacking() -> dict[str, str]:
     """What every set-up needs and is not here, whoever should have installed it: Debian's package, and its name."""
     found = {}
-    if not os.environ.get("CXX") and not any(shutil.which(name) for name in CXX_COMPILERS):
+    if cxx_compiler() is None:
         found["g++"] = "a C++ compiler (g++ or clang++)"
     try:
         import ensurepip  # noqa: F401
