@@ -17,7 +17,6 @@ constexpr uint32_t supply_millivolts = 5000;
 // power-on reset acts.
 constexpr uint32_t brown_out_millivolts = 2700, hysteresis_millivolts = 50, memory_millivolts = 1100;
 constexpr uint32_t eeprom_base = 0x810000, fuse_base = 0x820000;  // where avr-gcc's linker puts other memories
-constexpr uint8_t sleep_enable = 0x01;
 
 std::string hex(uint32_t value) {
   char text[16];
@@ -164,16 +163,15 @@ void Board::step() {
     watchdog_.acknowledge();
 }
 
+// Without interrupts nothing but a reset wakes the CPU, and of resets only the watchdog's comes by itself.
 void Board::sleep() {
-  if (!mcu_.flags[flag::I]) {
+  if (!mcu_.flags[flag::I] && !watchdog_.resets()) {
     mcu_.state = Mcu::State::done;
-  } else if (!(mcu_.data[reg::SMCR] & sleep_enable)) {
-    mcu_.state = Mcu::State::running;
-  } else {
-    const uint64_t wake_at = std::min(mcu_.events.next(), std::max(mcu_.cycle, stop_at_));
-    stats_.sleep_cycles += wake_at - mcu_.cycle;
-    mcu_.cycle = wake_at;
+    return;
   }
+  const uint64_t wake_at = std::min(mcu_.events.next(), std::max(mcu_.cycle, stop_at_));
+  stats_.sleep_cycles += wake_at - mcu_.cycle;
+  mcu_.cycle = wake_at;
 }
 
 RunState Board::run_until(uint64_t cycle) {

@@ -87,6 +87,7 @@ enum : uint16_t {
 
 // Bits of MCUSR, the cause of the last reset.
 enum : uint8_t { PORF = 0x01, EXTRF = 0x02, BORF = 0x04, WDRF = 0x08 };
+constexpr uint8_t SE = 0x01;  // in SMCR: without it SLEEP does nothing
 
 // Address of PINx; DDRx and PORTx follow it.
 constexpr uint16_t port_base(char letter) {

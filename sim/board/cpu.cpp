@@ -69,7 +69,7 @@ struct Cpu::State {
     request(mcu.reti);
   }
   ALWAYS_INLINE void fall_asleep() {
-    if (mcu.pending && flags[flag::I]) return;
+    if (!(data[reg::SMCR] & SE) || (mcu.pending && flags[flag::I])) return;
     mcu.state = Mcu::State::asleep;
     deadline = 0;
   }

@@ -6,13 +6,13 @@ namespace board {
 
 namespace {
 
-constexpr unsigned register_x = 26, register_y = 28, register_z = 30;
+constexpr unsigned pointer_x = 26, pointer_y = 28, pointer_z = 30;
 
 constexpr uint8_t byte(unsigned value) { return static_cast<uint8_t>(value); }
-constexpr unsigned field_d5(unsigned opcode) { return opcode >> 4 & 0x1F; }
-constexpr unsigned field_r5(unsigned opcode) { return (opcode & 0x0F) | (opcode >> 5 & 0x10); }
-constexpr unsigned field_d4(unsigned opcode) { return 16 + (opcode >> 4 & 0x0F); }
-constexpr unsigned field_k8(unsigned opcode) { return (opcode & 0x0F) | (opcode >> 4 & 0xF0); }
+constexpr unsigned register_d(unsigned opcode) { return opcode >> 4 & 0x1F; }
+constexpr unsigned register_r(unsigned opcode) { return (opcode & 0x0F) | (opcode >> 5 & 0x10); }
+constexpr unsigned upper_register_d(unsigned opcode) { return 16 + (opcode >> 4 & 0x0F); }
+constexpr unsigned constant_k(unsigned opcode) { return (opcode & 0x0F) | (opcode >> 4 & 0xF0); }
 
 Instruction make(Code code, unsigned d = 0, unsigned r = 0, unsigned cycles = 1, uint32_t k = 0) {
   return {code, byte(d), byte(r), byte(cycles), k};
@@ -44,16 +44,16 @@ Instruction Decoder::decode(uint32_t address) const {
     case 0x0:
     case 0x1:
     case 0x2: return decode_two_registers(opcode, address);
-    case 0x3: return make(Code::cpi, field_d4(opcode), 0, 1, field_k8(opcode));
-    case 0x4: return make(Code::sbci, field_d4(opcode), 0, 1, field_k8(opcode));
-    case 0x5: return make(Code::subi, field_d4(opcode), 0, 1, field_k8(opcode));
-    case 0x6: return make(Code::ori, field_d4(opcode), 0, 1, field_k8(opcode));
-    case 0x7: return make(Code::andi, field_d4(opcode), 0, 1, field_k8(opcode));
+    case 0x3: return make(Code::cpi, upper_register_d(opcode), 0, 1, constant_k(opcode));
+    case 0x4: return make(Code::sbci, upper_register_d(opcode), 0, 1, constant_k(opcode));
+    case 0x5: return make(Code::subi, upper_register_d(opcode), 0, 1, constant_k(opcode));
+    case 0x6: return make(Code::ori, upper_register_d(opcode), 0, 1, constant_k(opcode));
+    case 0x7: return make(Code::andi, upper_register_d(opcode), 0, 1, constant_k(opcode));
     case 0x8:
     case 0xA: {  // LDD and STD with a displacement
-      const unsigned pointer = opcode & 8u ? register_y : register_z;
+      const unsigned pointer = opcode & 8u ? pointer_y : pointer_z;
       const unsigned displacement = (opcode & 7u) | (opcode >> 7 & 0x18u) | (opcode >> 8 & 0x20u);
-      return make(opcode & 0x200u ? Code::store : Code::load, field_d5(opcode), pointer, 2, displacement);
+      return make(opcode & 0x200u ? Code::store : Code::load, register_d(opcode), pointer, 2, displacement);
     }
     case 0x9:
       if (opcode < 0x9400u) return decode_load_store(opcode, address);
@@ -62,14 +62,14 @@ Instruction Decoder::decode(uint32_t address) const {
         return make(opcode & 0x100u ? Code::sbiw : Code::adiw, 24 + (opcode >> 3 & 6u), 0, 2,
                     (opcode & 0x0Fu) | (opcode >> 2 & 0x30u));
       if (opcode < 0x9C00u) return decode_io_bit(opcode, address);
-      return make(Code::mul, field_d5(opcode), field_r5(opcode), 2);
+      return make(Code::mul, register_d(opcode), register_r(opcode), 2);
     case 0xB: {
       const uint32_t port = 0x20u + ((opcode & 0x0Fu) | (opcode >> 5 & 0x30u));
-      return make(opcode & 0x800u ? Code::out : Code::in, field_d5(opcode), 0, 1, port);
+      return make(opcode & 0x800u ? Code::out : Code::in, register_d(opcode), 0, 1, port);
     }
     case 0xC: return make(Code::jump, 0, 0, 2, relative(12, 0));
     case 0xD: return make(Code::call, 1, 0, wide_pc_ ? 4 : 3, relative(12, 0));
-    case 0xE: return make(Code::ldi, field_d4(opcode), 0, 1, field_k8(opcode));
+    case 0xE: return make(Code::ldi, upper_register_d(opcode), 0, 1, constant_k(opcode));
     default: break;
   }
   const unsigned bit = opcode & 7u;
@@ -80,15 +80,15 @@ Instruction Decoder::decode(uint32_t address) const {
     case 3:
       return make(static_cast<Code>(static_cast<unsigned>(Code::branch_by_carry) + bit), !(opcode & 0x400u), 0, 1,
                   relative(7, 3));
-    case 4: return make(Code::bld, field_d5(opcode), bit);
-    case 5: return make(Code::bst, field_d5(opcode), bit);
-    case 6: return make(Code::sbrc, field_d5(opcode), bit, 1, skip_length(address + 1));
-    default: return make(Code::sbrs, field_d5(opcode), bit, 1, skip_length(address + 1));  // erased flash too
+    case 4: return make(Code::bld, register_d(opcode), bit);
+    case 5: return make(Code::bst, register_d(opcode), bit);
+    case 6: return make(Code::sbrc, register_d(opcode), bit, 1, skip_length(address + 1));
+    default: return make(Code::sbrs, register_d(opcode), bit, 1, skip_length(address + 1));  // erased flash too
   }
 }
 
 Instruction Decoder::decode_two_registers(unsigned opcode, uint32_t address) const {
-  const unsigned d = field_d5(opcode), r = field_r5(opcode);
+  const unsigned d = register_d(opcode), r = register_r(opcode);
   switch (opcode >> 10) {
     case 0x1: return make(Code::cpc, d, r);
     case 0x2: return make(Code::sbc, d, r);
@@ -110,7 +110,7 @@ Instruction Decoder::decode_multiply(unsigned opcode) const {
   switch (opcode >> 8) {
     case 0: return make(opcode == 0 ? Code::nop : Code::invalid);
     case 1: return make(Code::movw, opcode >> 3 & 0x1Eu, opcode << 1 & 0x1Eu);
-    case 2: return make(Code::muls, field_d4(opcode), 16 + (opcode & 0x0Fu), 2);
+    case 2: return make(Code::muls, upper_register_d(opcode), 16 + (opcode & 0x0Fu), 2);
     default: break;
   }
   const unsigned d = 16 + (opcode >> 4 & 7u), r = 16 + (opcode & 7u);
@@ -124,20 +124,20 @@ Instruction Decoder::decode_multiply(unsigned opcode) const {
 
 // 1001 00xd dddd oooo: loads, and with x = 1 stores.
 Instruction Decoder::decode_load_store(unsigned opcode, uint32_t address) const {
-  const unsigned d = field_d5(opcode);
+  const unsigned d = register_d(opcode);
   const bool is_store = opcode & 0x200u;
   const auto memory = [&](Code load, Code store, unsigned pointer) {
     return make(is_store ? store : load, d, pointer, 2);
   };
   switch (opcode & 0x0Fu) {
     case 0x0: return make(is_store ? Code::store_direct : Code::load_direct, d, 0, 2, word(address + 1));
-    case 0x1: return memory(Code::load_increment, Code::store_increment, register_z);
-    case 0x2: return memory(Code::load_decrement, Code::store_decrement, register_z);
-    case 0x9: return memory(Code::load_increment, Code::store_increment, register_y);
-    case 0xA: return memory(Code::load_decrement, Code::store_decrement, register_y);
-    case 0xC: return memory(Code::load, Code::store, register_x);
-    case 0xD: return memory(Code::load_increment, Code::store_increment, register_x);
-    case 0xE: return memory(Code::load_decrement, Code::store_decrement, register_x);
+    case 0x1: return memory(Code::load_increment, Code::store_increment, pointer_z);
+    case 0x2: return memory(Code::load_decrement, Code::store_decrement, pointer_z);
+    case 0x9: return memory(Code::load_increment, Code::store_increment, pointer_y);
+    case 0xA: return memory(Code::load_decrement, Code::store_decrement, pointer_y);
+    case 0xC: return memory(Code::load, Code::store, pointer_x);
+    case 0xD: return memory(Code::load_increment, Code::store_increment, pointer_x);
+    case 0xE: return memory(Code::load_decrement, Code::store_decrement, pointer_x);
     case 0xF: return make(is_store ? Code::push : Code::pop, d, 0, 2);
     case 0x4: return make(is_store ? Code::invalid : Code::lpm, d, 0, 3);
     case 0x5: return make(is_store ? Code::invalid : Code::lpm_increment, d, 0, 3);
@@ -149,7 +149,7 @@ Instruction Decoder::decode_load_store(unsigned opcode, uint32_t address) const 
 
 // 1001 010d dddd oooo: one register, far jumps, and everything without operands.
 Instruction Decoder::decode_one_register(unsigned opcode, uint32_t address) const {
-  const unsigned d = field_d5(opcode);
+  const unsigned d = register_d(opcode);
   const uint32_t target = ((opcode >> 3 & 0x3Eu) | (opcode & 1u)) << 16 | word(address + 1);
   switch (opcode & 0x0Fu) {
     case 0x0: return make(Code::com, d);

@@ -20,7 +20,7 @@ void Interrupts::raise(unsigned vector) {
   mcu_.data[source.flag_reg] |= source.flag_bit;
   if (!enabled(source)) return;
   mcu_.pending |= uint64_t{1} << vector;
-  if (mcu_.state == Mcu::State::asleep) mcu_.state = Mcu::State::running;
+  if (mcu_.state == Mcu::State::asleep && mcu_.flags[flag::I]) mcu_.state = Mcu::State::running;
 }
 
 void Interrupts::set_level(unsigned vector, bool asserted) {

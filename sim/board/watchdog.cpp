@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Model of the watchdog after the data sheets, section "Watchdog Timer": its own oscillator of 128 kHz, WDE and the
-// time guarded by a sequence within four cycles. Writing that sequence starts the time anew; on the chip it goes on.
-// The fuse WDTON is unprogrammed.
+// time guarded by a sequence within four cycles. Another time does not restart the counter: a shorter one may be over
+// at once. The fuse WDTON is unprogrammed.
 #include "watchdog.h"
+
+#include <algorithm>
 
 namespace board {
 
@@ -27,10 +29,17 @@ void Watchdog::restart() {
   if (on()) count_from(mcu_.cycle);
 }
 
-void Watchdog::count_from(uint64_t cycle) {
-  const unsigned select = (control() & WDP) | (control() & WDP3 ? 8u : 0u);
-  schedule<&Watchdog::on_time_out>(mcu_, cycle + (shortest << select) * crystal_hertz / oscillator_hertz, *this);
+uint64_t Watchdog::period() const {
+  const unsigned control = mcu_.data[reg::WDTCSR], select = (control & WDP) | (control & WDP3 ? 8u : 0u);
+  return (shortest << select) * crystal_hertz / oscillator_hertz;
 }
+
+void Watchdog::count_from(uint64_t cycle) {
+  counts_from_ = cycle;
+  wait();
+}
+
+void Watchdog::wait() { schedule<&Watchdog::on_time_out>(mcu_, std::max(mcu_.cycle, counts_from_ + period()), *this); }
 
 // With both modes on, the interrupt that is not handled in time, or has switched itself off, is followed by the reset.
 void Watchdog::on_time_out(uint64_t cycle) {
@@ -65,7 +74,8 @@ void Watchdog::write_control(uint16_t, uint8_t value) {
   control() = static_cast<uint8_t>(now);
   interrupts_.set_level(mcu_.chip.watchdog_vector, (now & WDIF) && (now & WDIE));
   if (!on()) cancel<&Watchdog::on_time_out>(mcu_, *this);
-  else if (!was_on || changes) count_from(mcu_.cycle);
+  else if (!was_on) count_from(mcu_.cycle);
+  else if (changes) wait();
 }
 
 }  // namespace board

@@ -16,12 +16,16 @@ class Watchdog {
   void reset();
   // Its interrupt has been entered.
   void acknowledge();
+  // It resets the chip unless a WDR comes in time.
+  bool resets() const { return mcu_.data[reg::WDTCSR] & WDE; }
 
  private:
   uint8_t& control() { return mcu_.data[reg::WDTCSR]; }
   bool on() { return control() & (WDE | WDIE); }
+  uint64_t period() const;
   void restart();  // WDR
   void count_from(uint64_t cycle);
+  void wait();
   void write_control(uint16_t reg, uint8_t value);
   void on_time_out(uint64_t cycle);
   void on_window_closed(uint64_t cycle);
@@ -30,6 +34,7 @@ class Watchdog {
 
   Mcu& mcu_;
   Interrupts& interrupts_;
+  uint64_t counts_from_ = 0;
 };
 
 }  // namespace board

@@ -125,3 +125,8 @@ def test_sleep_needs_its_enable_bit_and_counts_as_idle_time(program: MakeProgram
         assert run.u16("ticks") == [99]
     assert idle.board.stats().sleep_cycles > 1_580_000
     assert busy.board.stats().sleep_cycles == 0
+
+
+def test_sleep_without_its_enable_bit_goes_on_with_interrupts_off_too(program: MakeProgram) -> None:
+    run = program("volatile uint8_t passed; int main(void) { cli(); sleep_cpu(); passed = 1; DONE(); }").finish()
+    assert run.u8("passed") == [1]

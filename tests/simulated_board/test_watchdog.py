@@ -62,6 +62,36 @@ def test_it_resets_a_sleeping_chip_at_its_time(program: MakeProgram) -> None:
     assert run.board.stats().sleep_cycles < asleep + 200
 
 
+def test_it_resets_a_chip_that_sleeps_without_interrupts(program: MakeProgram) -> None:
+    run = program("int main(void) { MCUSR = 0; wdt_enable(WDTO_15MS); DONE(); }").start()
+    run.run(SHORTEST + 1000)
+    assert run.board.stats().watchdog_resets == 1
+    assert run.board.stats().sleep_cycles > SHORTEST - 1000
+
+
+CHANGED = """
+int main(void) {
+    if (MCUSR & _BV(WDRF)) { MCUSR = 0; wdt_disable(); DONE(); }
+    MCUSR = 0; wdt_enable(FROM);
+    __builtin_avr_delay_cycles(600000);
+    WDTCSR = _BV(WDCE) | _BV(WDE); WDTCSR = _BV(WDE) | TO;
+    for (;;);
+}
+"""
+
+
+@pytest.mark.parametrize(("before", "after", "resets_at"), [(2, 0, 600_000), (2, 1, 600_000), (2, 3, 8 * SHORTEST)])
+def test_another_time_does_not_restart_its_counter(
+    program: MakeProgram, before: int, after: int, resets_at: int
+) -> None:
+    """The data sheet: switching to a shorter time can result in a time-out."""
+    run = program(CHANGED.replace("FROM", str(before)).replace("TO", str(after))).start()
+    run.run(resets_at - 1000)
+    assert run.board.stats().watchdog_resets == 0
+    run.run(2000)
+    assert run.board.stats().watchdog_resets == 1
+
+
 GUARD = """
 volatile uint8_t seen[4];
 int main(void) {
@@ -72,7 +102,7 @@ int main(void) {
     __asm__ volatile(".rept WAIT\\n nop\\n .endr");
     WDTCSR = 5; seen[2] = WDTCSR;
     __builtin_avr_delay_cycles(10); seen[3] = WDTCSR;
-    DONE();
+    for (;;);
 }
 """
 
@@ -82,7 +112,8 @@ def test_it_is_switched_off_and_its_time_changed_within_four_cycles_only(
     program: MakeProgram, wait: int, after: int
 ) -> None:
     """WDE may be set at any time. The store that ends the window takes two cycles itself."""
-    run = program(GUARD.replace("WAIT", str(wait))).finish()
+    run = program(GUARD.replace("WAIT", str(wait))).start()
+    run.run(SHORTEST // 2)
     assert run.u8("seen")[:2] == [8, 8]
     assert run.u8("seen")[2:] == [after, after]
 
