@@ -1,4 +1,4 @@
-"""Builds source distributions and wheels of both packages: `python -m tools.dist [--out FOLDER] [--python PYTHON ...]`.
+"""Builds the source distribution and wheels: `python -m tools.dist [--out FOLDER] [--python PYTHON ...]`.
 
 Each wheel is built from the source distribution, as a stranger's pip would do it. auditwheel then names
 the oldest C library that it runs with, and would copy libraries into it that not every Linux has.
@@ -17,15 +17,14 @@ from tools import ROOT
 from tools.setup import venv
 from tools.setup.console import SetupError, run, say
 
-PACKAGES = {"greywhale": ROOT, "greywhale_sim": ROOT / "sim"}
 OUT = ROOT / "build" / "dist"
 SDIST = "import sys; from scikit_build_core.build import build_sdist; build_sdist(sys.argv[1])"
 
 
-def build_sdist(name: str, out: Path) -> Path:
-    """The source distribution of a package, in `out`."""
-    run([venv.PYTHON, "-c", SDIST, out], what=f"The source distribution of {name}", cwd=PACKAGES[name])
-    (made,) = out.glob(f"{name}-*.tar.gz")
+def build_sdist(out: Path) -> Path:
+    """The source distribution, in `out`."""
+    run([venv.PYTHON, "-c", SDIST, out], what="The source distribution", cwd=ROOT)
+    (made,) = out.glob("greywhale-*.tar.gz")
     return made
 
 
@@ -44,19 +43,16 @@ def build_wheel(sdist: Path, out: Path, python: Path = venv.PYTHON) -> Path:
 
 
 def build_all(out: Path, pythons: list[Path]) -> list[Path]:
-    """Both packages for each Python; what was made. Older ones in `out` are removed."""
+    """The source distribution, and a wheel for each Python; what was made. Older ones in `out` are removed."""
     out.mkdir(parents=True, exist_ok=True)
     for old in (*out.glob("greywhale*.whl"), *out.glob("greywhale*.tar.gz")):
         old.unlink()
-    made = []
-    for name in PACKAGES:
-        sdist = build_sdist(name, out)
-        made += [sdist, *(build_wheel(sdist, out, python) for python in pythons)]
-    return made
+    sdist = build_sdist(out)
+    return [sdist, *(build_wheel(sdist, out, python) for python in pythons)]
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(description="Builds source distributions and wheels of both packages.")
+    parser = argparse.ArgumentParser(description="Builds the source distribution and wheels.")
     parser.add_argument("--out", type=Path, default=OUT, help="folder for them (default: build/dist)")
     parser.add_argument("--python", type=Path, action="append", help="build for this Python; may be repeated")
     options = parser.parse_args()

@@ -1,4 +1,4 @@
-"""Pins every Python package that the two pyproject.toml files lead to: `make lock` writes requirements.txt with what
+"""Pins every Python package that pyproject.toml leads to: `make lock` writes requirements.txt with what
 it takes to build and run, tools/setup/page.txt with what builds the page, tools/setup/compiler.txt with a compiler for
 the firmware, tools/requirements.txt with what checks and tests need beside them, and tools/oracles/requirements.txt
 with what the outside references need beside all of them.
@@ -15,14 +15,14 @@ import tempfile
 import tomllib
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 from tools import ROOT
 
-OWN = {"greywhale", "greywhale-sim"}
 RUN = ROOT / "requirements.txt"
 RUN_HEADER = """\
 # Every Python package that greywhale is built and runs with, pinned with the digests of its files. Written by
-# `make lock` from the two pyproject.toml files.
+# `make lock` from pyproject.toml.
 """
 CHECKS = ROOT / "tools/requirements.txt"
 CHECKS_HEADER = """\
@@ -51,29 +51,23 @@ COMPILE = (
 
 
 def runtime() -> list[str]:
-    """What the two packages ask for when they are installed."""
-    asked = (_project(file)["dependencies"] for file in ("pyproject.toml", "sim/pyproject.toml"))
-    return _foreign([name for names in asked for name in names])
+    """What the package asks for when it is installed."""
+    return _names_of("project", "dependencies")
 
 
 def build() -> list[str]:
     """What a checkout asks for to be built and run, its firmware included."""
-    host = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
-    return _foreign(
-        [*runtime(), *host["project"]["optional-dependencies"]["build"], *host["dependency-groups"]["build"]]
-    )
+    return [*runtime(), *_names_of("project", "optional-dependencies", "build"), *group("build")]
 
 
 def wanted() -> list[str]:
-    """What the packages ask for to be built, run, checked and tested."""
-    host = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
-    return _foreign([*build(), *host["dependency-groups"]["dev"]])
+    """What the package asks for to be built, run, checked and tested."""
+    return [*build(), *group("dev")]
 
 
 def group(name: str) -> list[str]:
     """A dependency group of its own: "page" builds the page, "compiler" the firmware."""
-    host = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
-    return _foreign(host["dependency-groups"][name])
+    return _names_of("dependency-groups", name)
 
 
 def versions() -> list[str]:
@@ -82,13 +76,12 @@ def versions() -> list[str]:
     return _versions([line for line in lines if re.match(r"[\w.-]+==", line)])
 
 
-def _project(file: str) -> dict[str, list[str]]:
-    project: dict[str, list[str]] = tomllib.loads((ROOT / file).read_text(encoding="utf-8"))["project"]
-    return project
-
-
-def _foreign(requirements: list[str]) -> list[str]:
-    return sorted(name for name in set(requirements) if re.split(r"[^\w-]", name)[0] not in OWN)
+def _names_of(*keys: str) -> list[str]:
+    """What pyproject.toml asks for under these keys."""
+    table: Any = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+    for key in keys:
+        table = table[key]
+    return list(table)
 
 
 def name_of(line: str) -> str:

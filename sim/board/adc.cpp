@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
 // Model of the ADC after the data sheets, chapter "Analog to Digital Converter": a conversion starts at the next rising
 // edge of the ADC clock, samples 1.5 ADC clocks later (13.5 in the first after enabling) and ends after 13 (25).
 // Single-ended channels, single and free-running conversions; other auto-trigger sources and gain are not modelled.

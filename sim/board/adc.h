@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
 // The analogue-to-digital converter: samples when the chip samples, and holds.
 #pragma once
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
 // The arithmetic of the AVR: results and status flags. Most instructions set four flags or more and few look at one, so
 // this keeps what the flags follow from, in three numbers that fit into a processor's registers.
 #pragma once

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
 // The Python module greywhale_sim._board.
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
 // The board: builds chip and models, resets them, and runs the CPU between events.
 #include "board.h"
 

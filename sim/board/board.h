@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
 // A simulated Arduino: one AVR chip at 16 MHz and 5 V with its peripherals, driven from outside in lock step.
 #pragma once
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
 // The two chips of the supported boards: Arduino Mega 2560 and Arduino Nano.
 #include "chip.h"
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
 // What differs between the two chips, and where their common registers are (data-sheet names, data-space addresses).
 #pragma once
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
 // Execution of AVR instructions. Program counter, time and deadline live in local variables; the Mcu's are brought up
 // to date around everything that may look at them, such as the register hooks of the peripherals.
 #include "cpu.h"

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
 // The CPU: executes instructions that are decoded once.
 #pragma once
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
 // Decoding after the "AVR Instruction Set Manual"; cycles are those of the ATmega (AVRe+) family.
 #include "instruction.h"
 

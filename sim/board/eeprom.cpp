@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
 // Model of the EEPROM after the data sheets, section "EEPROM Data Memory": EEMPE opens a window of four cycles for
 // EEPE; 3.4 ms to erase and write, 1.8 ms to do one of them; the CPU stands still for 4 cycles after a read and 2
 // after a write.

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
 // The EEPROM with the time a write takes, and with what is left of a byte when the power fails meanwhile.
 #pragma once
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
 // The one exception of the simulated board: a sentence that says what is wrong, where, and what to do.
 #pragma once
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
 // Timed events: which method of which model to call at which cycle. Few wait at a time, so they stand in an array, the
 // next one last, and nothing is allocated.
 #pragma once

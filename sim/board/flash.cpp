@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
 // Model of SPM after the data sheets, chapter "Boot Loader Support". Erasing or writing a page takes 4 ms (3.7 .. 4.5);
 // the CPU runs on when the page lies in the read-while-write section and stands still otherwise. Lock bits, SPM
 // interrupt and the signature row are not modelled; reading the section that is being written is not punished.

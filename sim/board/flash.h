@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
 // Self-programming (SPM) as a bootloader needs it: page buffer, erase and write times, the section that stays readable.
 #pragma once
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
 // AVR instructions, decoded once: what to do, with which registers, how long.
 #pragma once
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
 // Interrupts after the data sheets, sections "Reset and Interrupt Handling" and "Interrupt Response Time": the lowest
 // vector goes first; entry takes 4 cycles, 5 with a 22-bit program counter, and as many again when the CPU was asleep.
 #include "interrupts.h"

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
 // The interrupt table: requests of the models, which goes first, what entering it costs, how long the handlers take.
 #pragma once
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
 // Data memory with its registers, the status flags, and what a reset makes of them.
 #include "mcu.h"
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
 // What CPU and peripherals share: memories, program counter, time, status flags, the hooks of the I/O registers, events
 // and pending interrupts.
 #pragma once

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
 // The digital ports: what the program drives, and what something outside holds at a level. Any other input reads its
 // pull-up. There are no external and pin-change interrupts.
 #pragma once

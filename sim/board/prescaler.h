@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
 // GTCCR: clears the counters of the prescalers, one shared by all timers but timer 2, which has its own.
 #pragma once
 

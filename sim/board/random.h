@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
 // A small seeded generator (SplitMix64), so that what a real chip leaves to chance is repeatable here.
 #pragma once
 

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
 // Counting, flags and interrupts of the timer/counters after the data sheets. A match or overflow flag appears one
 // timer clock after the counter reached the value. Not modelled: external clocks, input capture, asynchronous clock,
 // the delay of OCR updates in PWM modes.

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
 // Timer/counters 0..5. The count is worked out when somebody looks at it, and only interrupts that are enabled cost
 // simulation time: a 20 kHz PWM is free.
 #pragma once

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
 // A running hash over what a program does and when. Two runs behaved alike, to the cycle, if their hashes are equal.
 #pragma once
 

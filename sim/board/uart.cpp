@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
 // Model of USART0 after the data sheets of both chips, chapter "USART". Asynchronous mode; no parity or frame errors,
 // since the line here has no noise.
 #include "uart.h"

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
 // USART0 with the timing and the limits of the chip: whole frames on the line, two bytes of receive buffer and a shift
 // register, one byte of transmit buffer, overruns.
 #pragma once

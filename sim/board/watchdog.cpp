@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
 // Model of the watchdog after the data sheets, section "Watchdog Timer": its own oscillator of 128 kHz, WDE and the
 // time guarded by a sequence within four cycles. Another time does not restart the counter: a shorter one may be over
 // at once. The fuse WDTON is unprogrammed.

@@ -1,4 +1,3 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
 // The watchdog: an interrupt, a reset, or first the one and then the other, after its time without a WDR.
 #pragma once
 

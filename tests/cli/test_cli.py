@@ -348,12 +348,3 @@ def test_sim_says_on_stderr_the_name_that_other_verbs_use(
     assert captured.out == f"{port}\n"
     assert captured.err.startswith(f"greywhale: this bench is {name}; greywhale finds it by itself")
     assert "greywhale info" in captured.err
-
-
-@pytest.mark.parametrize("verb", ["sim", "demo"])
-def test_a_missing_bench_is_one_sentence(capsys: Captured, monkeypatch: pytest.MonkeyPatch, verb: str) -> None:
-    for module in ("greywhale_sim", "greywhale_sim.serve", "greywhale_sim.serial_port"):
-        monkeypatch.setitem(sys.modules, module, None)
-    code, answer = ask(capsys, verb)
-    assert code == 1
-    assert "run `pip install greywhale-sim`" in answer["error"]

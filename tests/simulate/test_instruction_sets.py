@@ -9,7 +9,7 @@ from pathlib import Path
 
 from greywhale import _native
 
-BUILD = Path(__file__).parents[2] / "build" / "native"
+BUILD = Path(__file__).parents[2] / "build" / "extensions"
 
 
 def objects() -> dict[Path, str]:

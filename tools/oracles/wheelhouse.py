@@ -1,4 +1,4 @@
-"""What greywhale and greywhale-sim depend on, as wheels in build/wheelhouse: for installations in a test."""
+"""What greywhale depends on, as wheels in build/wheelhouse: for installations in a test."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def step(python: Path = venv.PYTHON) -> None:
     stamp = f"wheelhouse-{folder.name}"
     if stamps.is_current(stamp, wanted) and folder.is_dir():
         return
-    say(f"fetching what the packages depend on, for installations without a network (Python {folder.name})")
+    say(f"fetching what greywhale depends on, for installations without a network (Python {folder.name})")
     shutil.rmtree(folder, ignore_errors=True)
     pip = [str(python), "-m", "pip", "wheel", "--quiet", "--disable-pip-version-check", "--no-input"]
     # Where a file has digests, pip takes nothing that is not pinned on the command line; versions alone will do.

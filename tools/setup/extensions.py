@@ -1,4 +1,4 @@
-"""Builds and installs greywhale and greywhale-sim, editable and with native extensions.
+"""Builds and installs greywhale, editable and with its native modules.
 
 The build leaves the .venv alone, so that it may run beside what else uses the .venv; the installation takes a second.
 """
@@ -6,7 +6,6 @@ The build leaves the .venv alone, so that it may run beside what else uses the .
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass
 from pathlib import Path
 
 from tools import ROOT
@@ -17,76 +16,47 @@ WHEELS = ROOT / "build" / "editable"
 BUILD = (
     "import sys; from scikit_build_core.build import build_editable as b; b(sys.argv[1], {sys.argv[2]: sys.argv[3]})"
 )
-
-
-@dataclass(frozen=True)
-class Package:
-    """A package, its stub, what it is compiled from, and where its modules lie that an editable wheel must name."""
-
-    name: str
-    place: Path
-    stub: str
-    sources: tuple[str, ...]
-    modules: str
-    expected_s: int
-
-    @property
-    def wheels(self) -> Path:
-        return WHEELS / self.name
-
-    def inputs(self) -> str:
-        names = [str(path) for path in stamps.files_below(self.modules) if path.suffix == ".py"]
-        return stamps.digest(stamps.files_below("requirements.txt", "LICENSE", *self.sources), *names)
-
-
 ROOMS = ("codes", "fuzzy_pdi", "signal_chain")  # of the firmware
-PACKAGES = (
-    Package(
-        "greywhale",
-        ROOT,
-        "host/src/greywhale/_native.pyi",
-        ("pyproject.toml", "host/native", "sim/arm", *(f"firmware/lib/{room}" for room in ROOMS)),
-        "host/src/greywhale",
-        40,
-    ),
-    Package(
-        "greywhale-sim",
-        ROOT / "sim",
-        "sim/bench/greywhale_sim/_board.pyi",
-        ("sim/pyproject.toml", "sim/CMakeLists.txt", "sim/board"),
-        "sim/bench/greywhale_sim",
-        10,
-    ),
+SOURCES = (
+    *("pyproject.toml", "CMakeLists.txt", "requirements.txt", "LICENSE"),
+    *("host/native", "sim/CMakeLists.txt", "sim/arm", "sim/board"),
+    *(f"firmware/lib/{room}" for room in ROOMS),
 )
+MODULES = ("host/src/greywhale", "sim/bench/greywhale_sim")  # whose modules an editable wheel must name
+STUBS = ("host/src/greywhale/_native.pyi", "sim/bench/greywhale_sim/_board.pyi")
+STAMP = "greywhale"
 
 
 def build(checks: bool) -> None:
-    """Build the wheels that are not current. For checks a warning is an error."""
-    for package in PACKAGES:
-        if stamps.is_current(package.name, package.inputs(), checks) and (ROOT / package.stub).exists():
-            continue
-        say(f"building {package.name} ({package.expected_s} s)")
-        stamps.forget(package.name)
-        package.wheels.mkdir(parents=True, exist_ok=True)
-        for old in package.wheels.iterdir():
-            old.unlink()
-        setting = ("cmake.define.GREYWHALE_WERROR", "ON" if checks else "OFF")
-        command: list[str | Path] = [venv.PYTHON, "-c", BUILD, package.wheels, *setting]
-        # Else the compiler that Python itself was built with is taken, which may not be here.
-        compiler = {"CXX": system.cxx_compiler() or "c++"}
-        run(command, what=f"Building {package.name}", env={**venv.environment(), **compiler}, cwd=package.place)
+    """Build the wheel if it is not current. For checks a warning is an error."""
+    if stamps.is_current(STAMP, inputs(), checks) and all((ROOT / stub).exists() for stub in STUBS):
+        return
+    say("building greywhale (50 s)")
+    stamps.forget(STAMP)
+    WHEELS.mkdir(parents=True, exist_ok=True)
+    for old in WHEELS.glob("*.whl"):
+        old.unlink()
+    setting = ("cmake.define.GREYWHALE_WERROR", "ON" if checks else "OFF")
+    command: list[str | Path] = [venv.PYTHON, "-c", BUILD, WHEELS, *setting]
+    # Else the compiler that Python itself was built with is taken, which may not be here.
+    compiler = {"CXX": system.cxx_compiler() or "c++"}
+    run(command, what="Building greywhale", env={**venv.environment(), **compiler}, cwd=ROOT)
 
 
 def install(checks: bool) -> None:
-    """Install the wheels that were built."""
-    fresh = [package for package in PACKAGES if not stamps.is_current(package.name, package.inputs(), checks)]
-    if not fresh:
+    """Install the wheel that was built."""
+    if stamps.is_current(STAMP, inputs(), checks):
         return
-    wheels = [wheel for package in fresh for wheel in package.wheels.glob("*.whl")]
-    venv.pip_install("--no-index", "--no-deps", "--force-reinstall", *wheels, what="Installing greywhale")
+    flags = ("--no-index", "--no-deps", "--force-reinstall")
+    venv.pip_install(*flags, *WHEELS.glob("*.whl"), what="Installing greywhale")
     name_places_from_here()
-    for package in fresh:
-        stamps.set_current(package.name, package.inputs(), checks)
+    stamps.set_current(STAMP, inputs(), checks)
+
+
+def inputs() -> str:
+    """The digest of what the wheel is built from."""
+    names = [str(path) for path in stamps.files_below(*MODULES) if path.suffix == ".py"]
+    return stamps.digest(stamps.files_below(*SOURCES), *names)
 
 
 def name_places_from_here() -> None:

@@ -19,7 +19,6 @@ from click.core import ParameterSource
 from greywhale.base import bench_process, processes
 from greywhale.base.errors import BadUsage
 from greywhale.cli import completion
-from greywhale.cli.bench import need_bench
 from greywhale.cli.output import FILE, json_of, json_option, option, port_option, tell
 from greywhale.files.arm import load_arm
 
@@ -92,7 +91,6 @@ def command(
 @contextlib.contextmanager
 def _starting(board: str, arm: Path | None) -> Iterator[Future[bench_process.BenchProcess]]:
     """A bench that comes up meanwhile, and is ended whatever happens."""
-    need_bench("greywhale_sim.serial_port")
     words = ["--board", board, *([] if arm is None else ["--arm", str(arm)])]
     with ThreadPoolExecutor(1) as pool:
         starting = pool.submit(bench_process.BenchProcess, *words)

@@ -8,7 +8,6 @@ from typing import Annotated, TypedDict
 
 import click
 
-from greywhale.cli.bench import need_bench
 from greywhale.cli.output import FILE, json_option, option, progress, show, workers_option
 from greywhale.files.outputs import require_folder
 from greywhale.reproduce.request import Request
@@ -38,7 +37,6 @@ def command(out: Path, quick: bool, seeds: int | None, seed: int, workers: int |
     same command goes on from there.
     """
     require_folder(out, "report and results", "report.html", "report.pdf", "report.json")
-    need_bench("greywhale_sim")
     from greywhale.base.formats.whole import write_text
     from greywhale.base.study import choose_workers
     from greywhale.reproduce.pages.found import Found

@@ -1,4 +1,4 @@
-"""`greywhale sim`: the simulated bench, run by the separate package greywhale_sim."""
+"""`greywhale sim`: the simulated bench."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ from typing import Any, TypedDict
 
 import click
 
-from greywhale.cli.bench import need_bench
 from greywhale.cli.output import FILE, json_option, option, show, tell, warn
 from greywhale.files.leader import load_leader
 from greywhale.protocol.ports import lasting_name
@@ -45,12 +44,14 @@ def command(leader: Path | None, faults: tuple[str, ...], by_hand: bool, as_json
 
     On stderr it says the name under which `greywhale ports` lists the port.
     """
-    serve = need_bench("greywhale_sim.serve")
     if "list" in faults:
-        known = need_bench("greywhale_sim.faults")
-        answer: Mistakes = {"mistakes": {one.name: one.says for one in known.FAULTS}}
-        show(as_json, answer, known.listed())
+        from greywhale_sim.faults import FAULTS, listed
+
+        answer: Mistakes = {"mistakes": {one.name: one.says for one in FAULTS}}
+        show(as_json, answer, listed())
         return
+    from greywhale_sim import serve
+
     if leader is not None:
         warn(load_leader(leader).remarks)
     bench = serve.ServeOptions(leader=leader, faults=faults, by_hand=by_hand, **options)

@@ -5,7 +5,6 @@ The bench runs in lock step with its host, so the logs are the same byte for byt
 
 from __future__ import annotations
 
-import importlib
 import tempfile
 from dataclasses import replace
 from functools import cache
@@ -23,6 +22,8 @@ from greywhale.motion import evaluate, human_reaches
 from greywhale.protocol.table import ParameterTable
 from greywhale.reproduce.work.arms import DEFAULT, file_of
 from greywhale.reproduce.work.motions import MOTIONS, SHOWN_S, measures, paper_board, printed, rounded, shown
+from greywhale_sim.assemble import BenchOptions
+from greywhale_sim.lockstep import record_in_lock_step
 
 SUPPLY_V = 15.0
 BENCH_SEED = 1
@@ -53,14 +54,12 @@ def record(
     folder: Path, name: str, motion: Trajectory, table: ParameterTable, seed: int = BENCH_SEED, arm: str = DEFAULT
 ) -> Log:
     """The log `name`.csv of an arm that follows a motion; the leader's own file lies beside it."""
-    lock_step: Any = importlib.import_module("greywhale_sim.lockstep")
-    assemble: Any = importlib.import_module("greywhale_sim.assemble")
     leader, path = folder / f"{name}.leader.csv", folder / f"{name}.csv"
     save_leader(leader, motion)
-    options = assemble.BenchOptions(leader=leader, arm=file_of(arm, folder), seed=seed)
+    options = BenchOptions(leader=leader, arm=file_of(arm, folder), seed=seed)
     seconds = BEFORE_S + motion.duration_s + AFTER_S
     try:
-        lock_step.record_in_lock_step(path, options, table, seconds)
+        record_in_lock_step(path, options, table, seconds)
     except UserError as error:
         if not path.is_file():  # nothing at all was recorded
             raise
