@@ -11,6 +11,8 @@ from tools.setup.console import SetupError, say
 
 DEBIAN = (
     "libsimavr-dev",  # another CPU for the simulated board
+    "csmith",  # programs for it that nobody here wrote
+    "libcsmith-dev",
     "avrdude",  # the flasher that others use
     "octave",  # the fuzzy law as others evaluate it
     "octave-fuzzy-logic-toolkit",

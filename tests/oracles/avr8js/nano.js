@@ -129,4 +129,4 @@ function loadHex(text, flash) {
   }
 }
 
-module.exports = { Nano, HZ };
+module.exports = { Nano, HZ, loadHex };
