@@ -18,8 +18,10 @@ from starlette.types import Message, Receive, Scope, Send
 from greywhale.base.errors import UserError
 from greywhale.dashboard import server
 from greywhale.dashboard.answers import Answers
+from greywhale.dashboard.bucket import Bucket
+from greywhale.dashboard.door import Door
 from greywhale.dashboard.folder import Folder
-from greywhale.dashboard.guard import AT_ONCE, MOST_BODY_BYTES, Bucket, Guard
+from greywhale.dashboard.guard import AT_ONCE, MOST_BODY_BYTES, Guard
 from greywhale.files.log.layout import HEADING, TITLE
 from greywhale.protocol import schema
 from greywhale.protocol.frames import FrameDecoder
@@ -124,9 +126,9 @@ def test_a_body_that_comes_in_pieces_breaks_off_where_it_is_too_long() -> None:
     async def send(message: Message) -> None:
         raise AssertionError(message)
 
-    scope = {"type": "http", "method": "POST", "path": "/jobs", "headers": [(b"host", b"localhost:1")]}
-    scope["headers"].append((b"x-greywhale-token", b"secret"))  # type: ignore[attr-defined]
-    guarded = Guard(inner, "secret", 1, lambda path: False)(scope, receive, send)
+    scope: Scope = {"type": "http", "method": "POST", "path": "/jobs", "client": ("127.0.0.1", 2)}
+    scope["headers"] = [(b"host", b"localhost:1"), (b"x-greywhale-token", b"secret")]
+    guarded = Guard(inner, "secret", 1, lambda path: False, Door())(scope, receive, send)
     with ThreadPoolExecutor(1) as other:  # in this thread the page's tests may have left their browser's loop running
         other.submit(asyncio.run, guarded).result()
     assert got == ["http.request", "http.disconnect"]

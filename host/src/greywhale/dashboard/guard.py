@@ -7,16 +7,18 @@ this address (DNS rebinding). Neither knows the token, and both say in their hea
 from __future__ import annotations
 
 import hmac
-import time
 from collections.abc import Callable
 
 from starlette.responses import PlainTextResponse
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
+from greywhale.dashboard.bucket import Bucket
+from greywhale.dashboard.door import Address, Door
+
 SUBPROTOCOL = "greywhale"
 TOKEN_PREFIX = "token."
 MOST_BODY_BYTES = 1 << 20
-# A page asks for some ten things at its start, and then for one at a time.
+# Of all who have the token. A page asks for some ten things at its start, and then for one at a time.
 REQUESTS_A_SECOND, AT_ONCE = 100.0, 300.0
 
 POLICY = "; ".join(
@@ -40,33 +42,18 @@ _HEADERS = [
 ]
 
 
-class Bucket:
-    """So many a second, and so many at once."""
-
-    def __init__(self, a_second: float, at_once: float, clock: Callable[[], float] = time.monotonic) -> None:
-        self._a_second, self._most, self._clock = a_second, at_once, clock
-        self._left, self._then_s = at_once, clock()
-
-    def take(self) -> bool:
-        """Whether there is still one."""
-        now_s = self._clock()
-        self._left = min(self._most, self._left + (now_s - self._then_s) * self._a_second)
-        self._then_s = now_s
-        if self._left < 1.0:
-            return False
-        self._left -= 1.0
-        return True
-
-
 class Guard:
-    """An ASGI application around another one; `is_public` tells which paths anybody on this machine may read."""
+    """An ASGI application around another one; `is_public` tells which paths anybody on this machine may read, and the
+    `door` hears who has shown the token.
+    """
 
-    def __init__(self, inner: ASGIApp, token: str, port: int, is_public: Callable[[str], bool]) -> None:
+    def __init__(self, inner: ASGIApp, token: str, port: int, is_public: Callable[[str], bool], door: Door) -> None:
         self._inner = inner
         self._token = token.encode()
         self._hosts = {f"{name}:{port}" for name in ("127.0.0.1", "localhost")}
         self._origins = {f"http://{host}" for host in self._hosts}
         self._is_public = is_public
+        self.door = door
         self._bucket = Bucket(REQUESTS_A_SECOND, AT_ONCE)
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
@@ -92,13 +79,19 @@ class Guard:
         origin = headers.get(b"origin")
         if names.count(b"origin") > 1 or (origin is not None and origin.decode("latin-1") not in self._origins):
             return 403, "This server answers to its own pages alone; use the address that it printed."
-        if not self._bucket.take():
-            return 429, "Too many requests; wait a second."
+        if hmac.compare_digest(_token(scope, headers), self._token):
+            return self._refusal_of_owner(scope["client"])
+        if not self.door.may_ask(scope["client"]):
+            return 429, "Too many requests without the token; wait a second."
         if scope["type"] == "http" and scope["method"] in ("GET", "HEAD") and self._is_public(scope["path"]):
             return None
-        if not hmac.compare_digest(_token(scope, headers), self._token):
-            return 403, "The token is missing or not this server's; open the address that it printed."
-        return None
+        return 403, "The token is missing or not this server's; open the address that it printed."
+
+    def _refusal_of_owner(self, address: Address) -> tuple[int, str] | None:
+        """The same of a request with the token, whatever strangers do."""
+        if not self.door.welcome(address):
+            return 503, "Too many pages are open; close some."
+        return None if self._bucket.take() else (429, "Too many requests; wait a second.")
 
 
 def _token(scope: Scope, headers: dict[bytes, bytes]) -> bytes:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import json
+import logging
 import socket
 from collections.abc import Awaitable, Callable
 from functools import partial
@@ -16,17 +17,17 @@ from starlette.requests import ClientDisconnect, Request
 from starlette.responses import JSONResponse, Response
 from starlette.routing import BaseRoute, Mount, Route, WebSocketRoute
 from starlette.staticfiles import StaticFiles
-from starlette.types import ASGIApp
 
 from greywhale.base.errors import BadUsage, UserError
 from greywhale.dashboard.answers import Answers
+from greywhale.dashboard.connections import Server
+from greywhale.dashboard.door import Door
 from greywhale.dashboard.guard import Guard
 from greywhale.dashboard.sockets import serve_board, serve_host
 
 PAGE = Path(__file__).resolve().parent / "page"
 # Frames of the link are 50 bytes; a page sends some at once.
 MOST_MESSAGE_BYTES = 1 << 16
-MOST_CONNECTIONS = 64  # a page has two, and a moment's more for what it asks
 _END_WAIT_S = 1
 _BYTES = "application/octet-stream"
 PAGE_ID = "page id"  # among what is asked: which page asks, by the name that its board's socket told it
@@ -38,7 +39,7 @@ def require_page(page: Path = PAGE) -> Path:
     return page
 
 
-def application(answers: Answers, page: Path, token: str, port: int) -> ASGIApp:
+def application(answers: Answers, page: Path, token: str, port: int) -> Guard:
     """All that the server does, at this port of the loopback, for who has the token."""
     routes: list[BaseRoute] = [
         WebSocketRoute("/board", partial(serve_board, relay=answers.relay)),
@@ -62,7 +63,7 @@ def application(answers: Answers, page: Path, token: str, port: int) -> ASGIApp:
     private = {route.path for route in routes if isinstance(route, Route | WebSocketRoute)}
     first = {path.split("/")[1] for path in private}
     files = Mount("/", StaticFiles(directory=page, html=True))
-    return Guard(Starlette(routes=[*routes, files]), token, port, lambda path: path.split("/")[1] not in first)
+    return Guard(Starlette(routes=[*routes, files]), token, port, lambda path: path.split("/")[1] not in first, Door())
 
 
 def listen(port: int = 0) -> socket.socket:
@@ -78,24 +79,24 @@ def listen(port: int = 0) -> socket.socket:
     return listener
 
 
-def make_server(app: ASGIApp) -> uvicorn.Server:
+def make_server(app: Guard) -> Server:
     """What serves an application; its `run` takes the sockets."""
-    return uvicorn.Server(
-        uvicorn.Config(
-            app,
-            http="h11",
-            ws="wsproto",
-            loop="asyncio",
-            ws_max_size=MOST_MESSAGE_BYTES,
-            ws_per_message_deflate=False,
-            timeout_graceful_shutdown=_END_WAIT_S,
-            limit_concurrency=MOST_CONNECTIONS,
-            log_config=None,
-            access_log=False,
-            server_header=False,
-            lifespan="off",
-        )
+    config = uvicorn.Config(
+        app,
+        http="h11",
+        ws="wsproto",
+        loop="asyncio",
+        ws_max_size=MOST_MESSAGE_BYTES,
+        ws_per_message_deflate=False,
+        timeout_graceful_shutdown=_END_WAIT_S,
+        proxy_headers=False,  # a client's address is its own, whatever it says
+        log_config=None,
+        log_level=logging.ERROR,  # a warning for each odd request would let anybody fill the log
+        access_log=False,
+        server_header=False,
+        lifespan="off",
     )
+    return Server(config, app.door)
 
 
 def _told(answer: Callable[[dict[str, Any]], object]) -> Callable[[Request], Awaitable[Response]]:

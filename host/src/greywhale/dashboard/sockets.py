@@ -9,8 +9,9 @@ from collections.abc import Callable
 
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
+from greywhale.dashboard.bucket import Bucket
 from greywhale.dashboard.client import Client
-from greywhale.dashboard.guard import SUBPROTOCOL, Bucket
+from greywhale.dashboard.guard import SUBPROTOCOL
 from greywhale.dashboard.job import Facts
 from greywhale.dashboard.jobs import Jobs
 from greywhale.dashboard.outbox import Outbox

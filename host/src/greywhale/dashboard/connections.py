@@ -1,0 +1,201 @@
+"""Accepts the connections of a server: other users stay outside, and strangers cost little and end in no traceback.
+
+uvicorn takes 0.2 ms for a connection before it says a word, so it gets one when it has said something, and only so
+many a second: a flood of them delays new pages, but neither those that are open nor the motors' lease.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import errno
+import os
+import socket
+from collections import deque
+
+import uvicorn
+from uvicorn.protocols.http.h11_impl import H11Protocol
+
+from greywhale.base import system
+from greywhale.dashboard.bucket import Bucket
+from greywhale.dashboard.door import Door
+
+# Connections that the system keeps until they are accepted, which costs nothing here. Where there is room for fewer, a
+# new page would have to try again, a second later.
+BACKLOG = 4096
+# Connections that are accepted. So one that says something at once is heard before those behind it push it out.
+ACCEPTED_A_SECOND, ACCEPTED_AT_ONCE = 1000.0, 16.0
+# What uvicorn gets: a program may make a connection for each of its requests, of which 100 a second are answered.
+HANDED_A_SECOND, HANDED_AT_ONCE = 200.0, 64.0
+_AGAIN_S = 0.01
+WITHOUT_DESCRIPTORS_S = 1.0
+_ROOT = 0
+_USED_UP = (errno.EMFILE, errno.ENFILE, errno.ENOBUFS, errno.ENOMEM)
+
+
+class Arrival:
+    """One connection, silent at first; then uvicorn has it."""
+
+    def __init__(self, connection: socket.socket) -> None:
+        self.connection = connection
+        self._loop = asyncio.get_running_loop()
+        self._handed = self._closed = False
+        self._transport: asyncio.Transport | None = None
+        self._protocol: asyncio.BaseProtocol | None = None
+
+    @property
+    def gone(self) -> bool:
+        return self._closed or (self._transport is not None and self._transport.is_closing())
+
+    @property
+    def busy(self) -> bool:
+        protocol = self._protocol
+        return isinstance(protocol, H11Protocol) and protocol.cycle is not None and not protocol.cycle.response_complete
+
+    def close(self) -> None:
+        self._closed = True
+        if self._transport is not None:
+            self._transport.abort()
+        elif not self._handed:
+            self._loop.remove_reader(self.connection)
+            self.connection.close()
+
+    def has_ended(self) -> bool:
+        """Whether the other side has closed it, or reset it, without a word."""
+        try:
+            return not self.connection.recv(1, socket.MSG_PEEK)
+        except BlockingIOError:
+            return False
+        except OSError:
+            return True
+
+    async def hand(self, server: uvicorn.Server) -> None:
+        """Let uvicorn have it."""
+        self._handed = True
+
+        def make() -> asyncio.Protocol:
+            return server.config.http_protocol_class(  # type: ignore[call-arg]
+                config=server.config, server_state=server.server_state, app_state=server.lifespan.state
+            )
+
+        self._transport, self._protocol = await self._loop.connect_accepted_socket(make, self.connection)
+        if self._closed:
+            self._transport.abort()
+
+
+class Server(uvicorn.Server):
+    """uvicorn behind a door."""
+
+    def __init__(self, config: uvicorn.Config, door: Door) -> None:
+        super().__init__(config)
+        self._door = door
+        self._listener: socket.socket | None = None
+        self._reserve = -1  # a descriptor to spend where there are no others
+        self._spoken: deque[Arrival] = deque()
+        self._accepted = Bucket(ACCEPTED_A_SECOND, ACCEPTED_AT_ONCE)
+        self._handed = Bucket(HANDED_A_SECOND, HANDED_AT_ONCE)
+        self._handing: set[asyncio.Task[None]] = set()
+
+    async def startup(self, sockets: list[socket.socket] | None = None) -> None:
+        """Listen at one socket. On Windows, where asyncio waits for no plain sockets, uvicorn accepts by itself."""
+        await super().startup([] if system.WAITS_FOR_SOCKETS else sockets)
+        if system.WAITS_FOR_SOCKETS and sockets:
+            [self._listener] = sockets
+            self._listener.setblocking(False)
+            self._listener.listen(BACKLOG)
+            self._reserve = os.open(os.devnull, os.O_RDONLY)
+            self._listen()
+
+    async def on_tick(self, counter: int) -> bool:
+        self._door.look()
+        return await super().on_tick(counter)
+
+    async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
+        if self._listener is not None:
+            asyncio.get_running_loop().remove_reader(self._listener)
+            self._listener = None
+            os.close(self._reserve)
+        self._door.close_strangers()
+        await super().shutdown(sockets)
+
+    def _listen(self) -> None:
+        if self._listener is not None:
+            asyncio.get_running_loop().add_reader(self._listener, self._accept, self._listener)
+
+    def _rest(self, pause_s: float) -> None:
+        """Let those wait that are not accepted yet."""
+        loop = asyncio.get_running_loop()
+        if self._listener is not None:
+            loop.remove_reader(self._listener)
+            loop.call_later(pause_s, self._listen)
+
+    def _accept(self, listener: socket.socket) -> None:
+        while self._accepted.take():
+            try:
+                connection, address = listener.accept()
+            except ConnectionAbortedError:
+                continue
+            except BlockingIOError:
+                return
+            except OSError as error:
+                if error.errno not in _USED_UP:
+                    raise
+                self._door.tell("the system has no descriptors left for connections; new pages wait for some.")
+                self._spend_reserve(listener)
+                return
+            if is_foreign(connection):
+                self._door.tell("another user of this machine tried to connect to the dashboard, and was refused.")
+                connection.close()
+                continue
+            connection.setblocking(False)
+            arrival = Arrival(connection)
+            self._door.enter(address, arrival)
+            asyncio.get_running_loop().add_reader(connection, self._hear, arrival)
+        self._rest(_AGAIN_S)
+
+    def _spend_reserve(self, listener: socket.socket) -> None:
+        """Close the connection that waits first, and let those behind it wait."""
+        os.close(self._reserve)
+        with contextlib.suppress(OSError):
+            listener.accept()[0].close()
+        self._reserve = os.open(os.devnull, os.O_RDONLY)
+        self._rest(WITHOUT_DESCRIPTORS_S)
+
+    def _hear(self, arrival: Arrival) -> None:
+        """A connection has said something, or has ended."""
+        asyncio.get_running_loop().remove_reader(arrival.connection)
+        if arrival.has_ended():
+            arrival.close()
+            return
+        self._spoken.append(arrival)
+        if len(self._spoken) == 1:
+            self._hand()
+
+    def _hand(self) -> None:
+        """Let uvicorn have those that have said something, the first of them first; others wait meanwhile."""
+        loop = asyncio.get_running_loop()
+        while self._spoken and (self._spoken[0].gone or self._handed.take()):
+            arrival = self._spoken.popleft()
+            if not arrival.gone:
+                task = loop.create_task(arrival.hand(self))
+                self._handing.add(task)
+                task.add_done_callback(self._handing.discard)
+        if self._spoken:
+            self._rest(_AGAIN_S)
+            loop.call_later(_AGAIN_S, self._hand)
+
+
+def is_foreign(connection: socket.socket) -> bool:
+    """Whether another user is at the other end, as far as the system tells.
+
+    Root gets in, as it may read this process anyway, and forwards ports for others (containers). Where root itself
+    serves, its browser is somebody else's.
+    """
+    user = system.user()
+    if user == _ROOT:
+        return False
+    try:
+        ends = connection.getpeername(), connection.getsockname()
+    except OSError:  # it has ended
+        return False
+    return system.owner_of(*ends) not in (None, _ROOT, user)

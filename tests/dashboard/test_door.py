@@ -1,0 +1,98 @@
+"""Who may stay connected, and who has to go when too many come: by a clock of the test's own."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import pytest
+
+from greywhale.dashboard import door as door_module
+from greywhale.dashboard.door import AT_ONCE, PATIENCE_S, Door
+
+
+@dataclass
+class Visitor:
+    busy: bool = False
+    gone: bool = False
+
+    def close(self) -> None:
+        self.gone = True
+
+
+class Entrance:
+    """A door with its clock."""
+
+    def __init__(self, most_strangers: int = 3, most_known: int = 2) -> None:
+        self.now_s = 0.0
+        self.door = Door(most_strangers, most_known, lambda: self.now_s)
+
+    def enter(self, *ports: int, busy: bool = False) -> list[Visitor]:
+        visitors = [Visitor(busy) for _ in ports]
+        for port, visitor in zip(ports, visitors, strict=True):
+            self.door.enter(("127.0.0.1", port), visitor)
+        return visitors
+
+    def welcome(self, *ports: int) -> list[bool]:
+        return [self.door.welcome(("127.0.0.1", port)) for port in ports]
+
+
+def test_of_too_many_strangers_the_oldest_idle_ones_go(caplog: pytest.LogCaptureFixture) -> None:
+    entrance = Entrance()
+    busy = entrance.enter(1, busy=True)
+    idle = entrance.enter(2, 3, 4, 5)
+    assert [one.gone for one in busy + idle] == [False, True, True, False, False]
+    more = entrance.enter(6, 7, 8, busy=True)
+    assert [one.gone for one in busy + idle + more] == [True, True, True, True, True, False, False, False]
+    assert len(caplog.messages) == 1
+
+
+def test_strangers_push_out_nobody_who_has_shown_the_token() -> None:
+    entrance = Entrance()
+    known = entrance.enter(1, 2)
+    assert entrance.welcome(1, 2) == [True, True]
+    strangers = entrance.enter(*range(3, 50))
+    entrance.now_s = 2.0 * PATIENCE_S
+    entrance.door.look()
+    assert not any(one.gone for one in known)
+    assert all(one.gone for one in strangers)
+
+
+def test_those_with_the_token_are_bounded_by_themselves_and_one_that_goes_makes_room() -> None:
+    entrance = Entrance()
+    first, *_ = entrance.enter(1, 2, 3)
+    assert entrance.welcome(1, 2, 3, 1, 2) == [True, True, False, True, True]
+    first.gone = True
+    assert entrance.welcome(3) == [True]
+
+
+def test_a_stranger_has_its_time_and_one_that_waits_for_an_answer_gets_all_of_it() -> None:
+    entrance = Entrance()
+    [silent], [served] = entrance.enter(1), entrance.enter(2, busy=True)
+    entrance.now_s = PATIENCE_S
+    [late] = entrance.enter(3)
+    for at_s, gone in ((PATIENCE_S, [False, False, False]), (1.1 * PATIENCE_S, [True, False, False])):
+        entrance.now_s = at_s
+        entrance.door.look()
+        assert [one.gone for one in (silent, served, late)] == gone
+    served.busy = False
+    entrance.door.look()
+    assert [served.gone, late.gone] == [True, False]
+
+
+def test_each_stranger_uses_up_its_own_requests() -> None:
+    entrance = Entrance()
+    entrance.enter(1, 2)
+
+    def asked(port: int) -> int:
+        return sum(entrance.door.may_ask(("127.0.0.1", port)) for _ in range(1000))
+
+    assert [asked(1), asked(1), asked(2)] == [AT_ONCE, 0, AT_ONCE]
+    entrance.now_s = 1.0
+    assert asked(1) == door_module.REQUESTS_A_SECOND
+
+
+def test_the_same_is_told_once(caplog: pytest.LogCaptureFixture) -> None:
+    door = Door()
+    for sentence in 1000 * ["one.", "two."]:
+        door.tell(sentence)
+    assert caplog.messages == ["one.", "two."]
