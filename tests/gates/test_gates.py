@@ -57,8 +57,9 @@ def test_a_heap_a_float_or_too_much_is_found_anywhere_in_an_image(tmp_path: Path
     assert {"malloc: a heap is linked in.", "__mulsf3: floating point is linked in."} <= set(
         size.complaints(build(tmp_path, program))
     )
-    large = "volatile uint8_t room[1700]; void firmware_tick() { sink = room[b]; }"
-    assert any("bytes of RAM, but 1680 is the limit" in one for one in size.complaints(build(tmp_path, large)))
+    large = f"volatile uint8_t room[{size.RAM_LIMIT + 1}]; void firmware_tick() {{ sink = room[b]; }}"
+    complaints = size.complaints(build(tmp_path, large))
+    assert any(f"bytes of RAM, but {size.RAM_LIMIT} is the limit" in one for one in complaints)
 
 
 DEEP = """

@@ -8,8 +8,8 @@ from pathlib import Path
 from elftools.elf.elffile import ELFFile
 from elftools.elf.sections import SymbolTableSection
 
-FLASH_LIMIT = 26 * 1024
-RAM_LIMIT = 1680  # before the stack
+FLASH_LIMIT = 29 * 1024  # of the Nano's 32, less the largest bootloader and room for a repair
+RAM_LIMIT = 1800  # before the stack, whose bound on the Nano is below the rest of its 2,048
 FLASH_SECTIONS = (".text", ".data")
 RAM_SECTIONS = (".data", ".bss", ".noinit")
 FORBIDDEN = {
