@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tools.attack.arm_faults import CHATTER, faults
+from tools.attack.arm_faults import CHATTER, faults, leader_jumps
 from tools.attack.part import add_up
 from tools.attack.parts.faults import run
 
@@ -19,7 +19,7 @@ REPORTED = {
     "hang, interrupts off": {"watchdog"},
     "bit of the running set flips": {"memory", "estop"},
     "supply sinks by 0.1 V a ms": {"none"},
-    "leader floats": {"pot_low", "speed"},
+    "leader floats": {"pot_low", "leader_jump"},
     "follower floats": {"pot_low", "speed"},
     "motor dead": {"tracking", "runaway", "motors stayed on"},
     "motor reversed": {"runaway", "motors stayed on"},
@@ -31,6 +31,7 @@ REPORTED = {
     for state, code in RAILS.items()
     for pattern in (None, *CHATTER)
 }
+REPORTED |= {name: {"leader_jump"} for name in leader_jumps()}
 
 
 @pytest.mark.slow

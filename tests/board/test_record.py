@@ -159,6 +159,7 @@ def test_a_few_samples_that_are_lost_at_the_end_are_counted(out: Path) -> None:
         (Faults(restart_at=200, restart_says_hello=False), "restarted"),
         (Faults(unplug_at=200), "went away"),
         (Faults(fault_at=(200, Fault.POT_HIGH, 6)), r"another's \(follower potentiometer 2\)"),
+        (Faults(fault_at=(200, Fault.LEADER_JUMP, 3)), r"jumped \(leader potentiometer 3\)"),
         (Faults(fault_at=(200, Fault.TRACKING, 1)), r"\(joint 1\)"),
     ],
 )

@@ -7,7 +7,6 @@ order, and at a random moment a fault. A leader that a person moves makes the er
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,12 +16,13 @@ from greywhale.board.device import stop_message
 from greywhale.motion import human_reaches
 from greywhale.protocol import frames, schema
 from greywhale_sim.board_with_image import CYCLES_PER_TICK
+from tools.attack import pot_lies
 from tools.attack.arm_on_board import SLICE_S, ArmOnBoard, Leader
+from tools.attack.pot_lies import Inject, jump, leader, shift, to_and_fro, two_leaders
 
 PATIENCE_S = 2.0
 SOFT_START_MS = 100
 CHATTER = ((2, 3), (1, 2), (2, 4), (2, 10))  # ms at the rail, of so many
-NOISE_MV = 2.4
 LEASE_MS = 20
 SINKS_MV_PER_MS = 100.0
 FLOOD_BYTES = 20  # in each slice of 250 us: 80 a millisecond
@@ -40,80 +40,8 @@ class Trial:
     where: int
 
 
-Inject = Callable[[ArmOnBoard, int], None]  # does it to a joint of the arm
-
-
-def _at(millivolts: float, follower: bool, pattern: tuple[int, int] | None = None) -> Inject:
-    """A pot at a rail, all the time or so many ms of so many."""
-
-    def inject(arm: ArmOnBoard, joint: int) -> None:
-        pot = joint + 4 * follower
-
-        def fault(volts: Floats, since: float) -> None:
-            if pattern is None or since * 1000 % pattern[1] < pattern[0] - 1e-9:
-                volts[pot] = millivolts
-
-        arm.pot_fault = fault
-
-    return inject
-
-
-def _freeze(arm: ArmOnBoard, joint: int) -> None:
-    """The wiper slips on its shaft: it stays where it is, with the noise of any reading."""
-    kept: list[float] = []
-
-    def fault(volts: Floats, since: float) -> None:
-        if not kept:
-            kept.append(volts[4 + joint])
-        volts[4 + joint] = kept[0] + arm.random.normal(0.0, NOISE_MV)
-
-    arm.pot_fault = fault
-
-
-def _read_neighbour(arm: ArmOnBoard, joint: int) -> None:
-    other = 4 + (joint + int(arm.random.integers(1, 4))) % 4
-
-    def fault(volts: Floats, since: float) -> None:
-        volts[4 + joint] = volts[other]
-
-    arm.pot_fault = fault
-    arm.board.set_joined(1 << 4 + joint | 1 << other, 1)
-
-
-def _touch_neighbour(arm: ArmOnBoard, joint: int) -> None:
-    """The wires of two wipers touch: both inputs read the mean, as with two equal potentiometers near their middle."""
-    both = [4 + joint, 4 + (joint + int(arm.random.integers(1, 4))) % 4]
-
-    def fault(volts: Floats, since: float) -> None:
-        volts[both] = volts[both].mean()
-
-    arm.pot_fault = fault
-    arm.board.set_joined(1 << both[0] | 1 << both[1], 2)
-
-
-def _float(follower: bool) -> Inject:
-    """The wiper's wire is off, and nothing pulls the pin down."""
-
-    def inject(arm: ArmOnBoard, joint: int) -> None:
-        arm.board.set_floating(1 << (joint + 4 * follower))
-
-    return inject
-
-
 def _reverse_motor(arm: ArmOnBoard, joint: int) -> None:
     arm.motor_signs[joint] = -1.0
-
-
-def _reverse_pot(arm: ArmOnBoard, joint: int) -> None:
-    """It turns the other way about the place where it is now."""
-    middle: list[float] = []
-
-    def fault(volts: Floats, since: float) -> None:
-        if not middle:
-            middle.append(volts[4 + joint])
-        volts[4 + joint] = 2 * middle[0] - volts[4 + joint]
-
-    arm.pot_fault = fault
 
 
 def _block(arm: ArmOnBoard, joint: int) -> None:
@@ -170,6 +98,19 @@ def _sink(arm: ArmOnBoard, joint: int) -> None:
     arm.pot_fault = fall
 
 
+def leader_jumps() -> dict[str, Inject]:
+    """A leader's reading that no hand makes, by name."""
+    at_once = {f"leader jumps {way:g} rad": shift(leader, jump(way)) for way in (0.3, 1.0, 2.0)}
+    within = {f"leader jumps 1 rad in {ms} ms": shift(leader, jump(1.0, ms / 1000)) for ms in (5, 20)}
+    return {
+        **at_once,
+        **within,
+        "leader jumps 1 rad to and fro": shift(leader, to_and_fro(1.0, 0.003)),
+        "leader jumps to the end of its track": pot_lies.leave_range,
+        "two leaders jump 1 rad": shift(two_leaders, jump(1.0)),
+    }
+
+
 def faults() -> dict[str, Inject]:
     """Everything that can be injected, by name."""
     found: dict[str, Inject] = {
@@ -183,18 +124,20 @@ def faults() -> dict[str, Inject]:
         "supply sinks by 0.1 V a ms": _sink,
     }
     for side, follower in (("leader", False), ("follower", True)):
-        found[f"{side} floats"] = _float(follower)
+        found[f"{side} floats"] = pot_lies.leave_floating(follower)
         for state, rail in (("open", 0.0), ("shorted", 5000.0)):
-            found[f"{side} {state}"] = _at(rail, follower)
+            found[f"{side} {state}"] = pot_lies.at_rail(rail, follower)
             for pattern in CHATTER:
-                found[f"{side} {state} {pattern[0]} of {pattern[1]} ms"] = _at(rail, follower, pattern)
-    return found | {
+                found[f"{side} {state} {pattern[0]} of {pattern[1]} ms"] = pot_lies.at_rail(rail, follower, pattern)
+    return {
+        **found,
+        **leader_jumps(),
         "motor dead": _cut_motor,
-        "follower frozen": _freeze,
-        "follower reads neighbour": _read_neighbour,
-        "follower touches neighbour": _touch_neighbour,
+        "follower frozen": pot_lies.freeze,
+        "follower reads neighbour": pot_lies.read_neighbour,
+        "follower touches neighbour": pot_lies.touch_neighbour,
         "motor reversed": _reverse_motor,
-        "follower pot reversed": _reverse_pot,
+        "follower pot reversed": pot_lies.reverse,
         "joint blocked": _block,
     }
 

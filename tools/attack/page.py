@@ -43,6 +43,7 @@ INJECTED_AS = {
     "speed": "follower reads neighbour",
     "runaway": "motor reversed",
     "memory": "bit of the running set flips",
+    "leader_jump": "leader jumps 1 rad",
 }
 
 

@@ -6,6 +6,7 @@ import { LinkClient, PATIENCE_MS } from "../src/link/client";
 import { crc16 } from "../src/link/crc";
 import { LinkError } from "../src/link/declared";
 import { encodeFrame, FrameDecoder, type Frame } from "../src/link/frames";
+import { faultSentence } from "../src/link/refusal";
 import * as schema from "../src/link/schema";
 
 type Vector = { message: keyof typeof schema.MESSAGES; seq: number; payload: string; wire: string; values: object };
@@ -100,6 +101,15 @@ test("replies find their request in any order, and a refusal is one sentence", a
   client.receive(encodeFrame(schema.ParamGetReply.type, one!, schema.ParamGetReply.pack({ index: 3, value: 7 })));
   assert.deepEqual([(await first).value, (await second).value], [7, -9]);
   await assert.rejects(third, /refused enable: .*\(joint 2, 2\.00 rad\): move the leader/);
+});
+
+test("a fault names the potentiometer or the joint, as the kind of fault has it", () => {
+  const place = (fault: number, where: number): string => faultSentence({ fault, fault_where: where });
+  const { leader_jump, pot_high, tracking, estop } = schema.Fault.is;
+  assert.match(place(leader_jump, 2), /jumped \(leader potentiometer 2\)\./);
+  assert.match(place(pot_high, 5), /\(follower potentiometer 1\)\./);
+  assert.match(place(tracking, 1), /\(joint 1\)\./);
+  assert.doesNotMatch(place(estop, 0xff), /\(/);
 });
 
 test("silence is asked again with the same frame, then told", async ({ mock }) => {

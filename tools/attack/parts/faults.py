@@ -27,6 +27,7 @@ SLOWER_MS = {
     "supply sinks by 0.1 V a ms": 24.0,  # 23 ms to the level of the brown-out detector
     "leader floats": 45.0,  # one pot in each tick is read after ground
     "follower floats": 45.0,
+    "leader jumps 1 rad in 20 ms": 20.0,  # two looks at its speed
 } | {f"{side} {state} 2 of 10 ms": 20.0 for side in ("leader", "follower") for state in ("open", "shorted")}
 # Some show only once the person has moved that joint. Then a way counts and not the time: of the follower, and
 # where a potentiometer lies only what makes the true error grow.
@@ -94,7 +95,8 @@ PART = Part(
         before and after tuning, those with the numbers of travel that `tune` works out for this arm. At {MOMENTS:,}
         random moments of a run, and of a tick, each fault begins. The motors must be off within {AT_ONCE_MS:g} ms;
         within {LEASE_MS + 2} ms for the lease, 20 ms for a hang (the watchdog's time) and for a wire that touches
-        only 2 ms in 10, 45 ms for an input that floats, 30 ms for a flood, 24 ms for a supply that sinks (the
+        only 2 ms in 10, 45 ms for an input that floats, 30 ms for a flood, 20 ms for a
+        leader that takes 20 ms to jump, 24 ms for a supply that sinks (the
         brown-out detector acts after 23), 103 ms for a flipped bit. Some faults show only once the person moves that
         joint. Then a way counts, at most {FARTHEST_RAD} rad: of the follower where a motor does not obey (dead,
         reversed, blocked) or a potentiometer turns the other way, and that part of it by which the true error has
@@ -109,6 +111,7 @@ PART = Part(
         "sim/bench/greywhale_sim/board_with_image.py",
         "tools/attack/arm_faults.py",
         "tools/attack/arm_on_board.py",
+        "tools/attack/pot_lies.py",
     ),
     pieces,
     run,

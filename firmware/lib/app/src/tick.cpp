@@ -260,9 +260,19 @@ void Tick::stop() {
 }
 
 int16_t Tick::leader(uint8_t joint) const {
+  // What stands in the leader's place has moved on since.
+  if (drivers_on_ && (lead_.on() || scaling_.on())) return sampling_.reference(joint);
+  return leader_arm(joint);
+}
+
+int16_t Tick::leader_arm(uint8_t joint) const {
   if (!lead_.on() && !scaling_.on()) return sampling_.leader(joint);
-  if (drivers_on_) return sampling_.reference(joint);  // what stands in the leader's place has moved on since
   return static_cast<int16_t>((sampling_.leader_q27(joint, sets_.running()) + 0x4000) >> 15);
+}
+
+bool Tick::is_led_by_leader(uint8_t joint) const {
+  const bool in_use = (sampling_.pots_in_use() & hal::pot_bit(static_cast<uint8_t>(joint + hal::joint_count))) != 0;
+  return in_use && !lead_.on() && scaling_.clutch() != wire::Clutch::disengaged;
 }
 
 void Tick::use_clutch(bool disengage) {
@@ -321,6 +331,8 @@ __attribute__((noinline)) bool Tick::check_memory() {
   if (checked_ || sets_.applying()) return false;
   checked_ = true;
   const uint8_t joint = static_cast<uint8_t>(number_) % hal::joint_count;
+  supervisor_.look_at_leader(joint, leader_arm(joint), is_led_by_leader(joint), sets_.running().speed_limit);
+  follow_supervisor();
   const bool pots_are_right = !sampling_.configure_joint(sets_.running(), joint, lead_.on() || scaling_.on());
   if (pots_are_right && (check_some_bytes() || memory_.ends_well())) return true;
   supervisor_.lose_params();

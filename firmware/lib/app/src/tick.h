@@ -72,6 +72,8 @@ class Tick {
   }
   void switch_drivers();
   void leader_leads();
+  int16_t leader_arm(uint8_t joint) const;  // what its potentiometer says, q12 rad
+  bool is_led_by_leader(uint8_t joint) const;
   void control();
   template <uint8_t joint>
   void control_joint(uint16_t limit_mv);

@@ -54,8 +54,7 @@ __attribute__((noinline)) MotionFault Motion::look_at(Joint& own, const JointSee
     own.hold = Hold::free;
     return MotionFault::none;
   }
-  // 131 / 8 q12 rad a look are 1 rad/s.
-  if (limits.speed != 0 && size_of(moved) > limits.speed * 131u / 8) return MotionFault::speed;
+  if (limits.speed != 0 && size_of(moved) > way_of_look(limits.speed)) return MotionFault::speed;
   const Push push = push_of(seen, limits);
   const bool back = goes_back(own, moved, push);
   if (limits.runaway != 0 && size_of(own.back) > limits.runaway * 32u) return MotionFault::runaway;

@@ -28,6 +28,9 @@ inline uint16_t size_of(int16_t value) {
   return value < 0 ? static_cast<uint16_t>(-static_cast<uint16_t>(value)) : static_cast<uint16_t>(value);
 }
 
+// The way of a look at a speed in rad/s, in q12 rad.
+inline uint16_t way_of_look(uint8_t speed) { return static_cast<uint16_t>(speed * 131u / 8); }
+
 // How far a voltage moves a joint; see motion.h.
 struct Travel {
   uint8_t speed_per_volt;  // 1/32 rad/(s V)

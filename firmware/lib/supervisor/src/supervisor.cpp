@@ -107,6 +107,10 @@ void Supervisor::look_at_joint(uint8_t joint, const JointSeen& seen, const Motio
   if (motors_on()) watch_joint(joint, seen, limits);
 }
 
+void Supervisor::look_at_leader(uint8_t joint, int16_t reading, bool leads, uint8_t speed_limit) {
+  if (jumps_.look(joint, reading, speed_limit) && leads && motors_on()) raise(Fault::leader_jump, joint);
+}
+
 void Supervisor::watch_joint(uint8_t joint, const JointSeen& seen, const MotionLimits& limits) {
   const auto reference = static_cast<int16_t>(seen.follower + seen.error);
   switch (motion_.look(joint, seen, limits)) {
@@ -163,6 +167,7 @@ __attribute__((cold)) Reply Supervisor::enable(uint16_t lease_ms, const Observat
   overruns_.forget();
   unrest_.forget();
   motion_.forget();
+  jumps_.forget();
   lease_ = lease_ms;
   return {NackCode::none, nowhere, 0};
 }

@@ -4,6 +4,7 @@
 #include <signal_chain/soft_start.h>
 #include <stdint.h>
 
+#include "jumps.h"
 #include "motion.h"
 #include "overruns.h"
 #include "rails.h"
@@ -66,6 +67,8 @@ class Supervisor {
   void note_rails(uint8_t low, uint8_t high);
   // Between ticks, the next joint after each. It also moves the soft start on, which a tick has no time for.
   void look_at_joint(uint8_t joint, const JointSeen& seen, const MotionLimits& limits);
+  // The same for the leader's own reading, q12 rad; whether the reference comes from there. The limit is in rad/s.
+  void look_at_leader(uint8_t joint, int16_t reading, bool leads, uint8_t speed_limit);
   // After unrest: starts the motors again, within the lease as it was. The fault stays to be seen. False when refused.
   bool restart(const Observation& seen, const Distances& distances);
 
@@ -104,6 +107,7 @@ class Supervisor {
   Overruns overruns_;
   Unrest unrest_;
   Motion motion_;
+  Jumps jumps_;
   uint16_t lease_ = 0;  // ticks, 0 = until stop; it stays after a fault, for restart()
   uint8_t boot_left_ : 7;
   bool params_ok_ : 1;

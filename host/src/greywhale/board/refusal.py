@@ -63,7 +63,7 @@ def fault_text(status: schema.StatusReply) -> str:
     fault, where = status.fault, status.fault_where
     place = ""
     if where != 0xFF:
-        pots = (schema.Fault.POT_LOW, schema.Fault.POT_HIGH)
+        pots = (schema.Fault.POT_LOW, schema.Fault.POT_HIGH, schema.Fault.LEADER_JUMP)
         place = f" ({pot_name(where)})" if fault in pots else f" (joint {where})"
     return f"{fault.description}{place}: {lower_first(fault.remedy)}"
 

@@ -18,7 +18,7 @@ from typing import ClassVar
 from .declared import Described, Field, Group, Message, Parameter, Table, check_length
 
 PROTOCOL = 1
-SCHEMA_HASH = 0x423FE615
+SCHEMA_HASH = 0x67B0D8E0
 MAX_PAYLOAD = 48
 REPLY_BIT = 0x80
 LAYOUT = 5
@@ -61,6 +61,7 @@ class Fault(Described):
     RUNAWAY = 11, "a follower moved against its motor's voltage, faster and faster", "Check motor_sign, both motor wires and the sign of the potentiometer's scale, and that the potentiometer is that joint's own, then clear the fault."
     STALLED = 12, "a motor had voltage, but its follower did not move", "Check for something in the joint's way, its motor supply, and that its potentiometer turns with it; for a heavy load raise breakaway_volts or stall_volts, then clear the fault."
     MEMORY = 13, "the running parameters had changed in the board's memory", "Upload a controller file with `greywhale upload` or reset the board; if it comes back, check the board's supply for noise."
+    LEADER_JUMP = 14, "a leader's potentiometer jumped", "Check that potentiometer's three wires, its wiper and its coupling to the joint, or raise speed_limit, then clear the fault."
 
 
 class NackCode(Described):
@@ -256,7 +257,7 @@ class StatusReply(Message):
     state: State  # state of the supervisor
     stop_reason: StopReason  # why the motors last went off
     fault: Fault  # first fault since it was last cleared
-    fault_where: int  # 0..3 leader pot, 4..7 follower pot (pot faults); 0..3 joint (other faults); 255 none
+    fault_where: int  # 0..3 leader pot, 4..7 follower pot (pot_low, pot_high, leader_jump); 0..3 joint (other faults); 255 none
     tick: int  # ticks since boot [ticks]
     late_ticks: int  # ticks that began before the last one had finished
     frames_bad: int  # frames refused for their length, coding or CRC (stops at 65535)
@@ -1096,7 +1097,7 @@ TABLE = Table((
         Field("unrest_action", "u8", "", 1.0, 0, 1, (0,), False, None, "what unrest does: 0 turns the motors off, 1 goes on with the safe controllers, and turns the motors off at the next unrest"),
     )),
     Group("", 1, "What a follower's motion must be like: a reading that lies and a motor or potentiometer the wrong way round are faults. A joint that does not go where its voltage should have moved it is held back.", 2, (
-        Field("speed_limit", "u8", "rad/s", 1.0, 0, 100, (25,), False, None, "a follower's reading that moves faster is a fault; 0 turns the check off"),
+        Field("speed_limit", "u8", "rad/s", 1.0, 0, 100, (25,), False, None, "a follower's reading that moves faster is a fault, and so is a leader's that jumps: it moves faster, and its speed has changed by more within 4 ms. 0 turns both checks off"),
         Field("runaway_limit", "u8", "rad", 0.0078125, 0, 192, (40,), False, None, "way of a follower against its voltage of at least 2 V, without slowing down, that becomes a fault; 0 turns the check off"),
         Field("stall_volts", "u8", "V", 0.1, 0, 250, (32,), False, None, "voltage above which a follower must move: breakaway_volts of joints that have none. 0 turns the check off"),
         Field("stall_time", "u8", "s", 0.25, 4, 240, (80,), False, None, "time that a joint may be held back before that is a fault"),

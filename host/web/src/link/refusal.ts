@@ -47,7 +47,7 @@ function detailText({ code, detail }: Nack): string {
 export function faultSentence(status: Pick<StatusReply, "fault" | "fault_where">): string {
   const fault = Fault.of(status.fault);
   const where = status.fault_where;
-  const pots = status.fault === Fault.is.pot_low || status.fault === Fault.is.pot_high;
+  const pots = [Fault.is.pot_low, Fault.is.pot_high, Fault.is.leader_jump].some((one) => one === status.fault);
   const place = where === 0xff ? "" : ` (${pots ? potName(where) : `joint ${where}`})`;
   return `${upperFirst(fault.description)}${place}. ${fault.remedy}`;
 }

@@ -4,7 +4,7 @@
 import { Enumeration, Message, Request, Table } from "./declared";
 
 export const PROTOCOL = 1;
-export const SCHEMA_HASH = 0x423fe615;
+export const SCHEMA_HASH = 0x67b0d8e0;
 export const MAX_PAYLOAD = 48;
 
 /** States of the supervisor. */
@@ -41,6 +41,7 @@ export const Fault = new Enumeration("Fault", {
   runaway: [11, "a follower moved against its motor's voltage, faster and faster", "Check motor_sign, both motor wires and the sign of the potentiometer's scale, and that the potentiometer is that joint's own, then clear the fault."],
   stalled: [12, "a motor had voltage, but its follower did not move", "Check for something in the joint's way, its motor supply, and that its potentiometer turns with it; for a heavy load raise breakaway_volts or stall_volts, then clear the fault."],
   memory: [13, "the running parameters had changed in the board's memory", "Upload a controller file with `greywhale upload` or reset the board; if it comes back, check the board's supply for noise."],
+  leader_jump: [14, "a leader's potentiometer jumped", "Check that potentiometer's three wires, its wiper and its coupling to the joint, or raise speed_limit, then clear the fault."],
 });
 
 /** Why a request was refused. */
@@ -156,7 +157,7 @@ export type StatusReply = {
   readonly state: number; // state of the supervisor (State)
   readonly stop_reason: number; // why the motors last went off (StopReason)
   readonly fault: number; // first fault since it was last cleared (Fault)
-  readonly fault_where: number; // 0..3 leader pot, 4..7 follower pot (pot faults); 0..3 joint (other faults); 255 none
+  readonly fault_where: number; // 0..3 leader pot, 4..7 follower pot (pot_low, pot_high, leader_jump); 0..3 joint (other faults); 255 none
   readonly tick: number; // ticks since boot [ticks]
   readonly late_ticks: number; // ticks that began before the last one had finished
   readonly frames_bad: number; // frames refused for their length, coding or CRC (stops at 65535)
@@ -420,7 +421,7 @@ export const TABLE = new Table([
     ["unrest_action", "u8", "", 1, 0, 1, [0], false, null, "what unrest does: 0 turns the motors off, 1 goes on with the safe controllers, and turns the motors off at the next unrest"],
   ], 2],
   ["", 1, [
-    ["speed_limit", "u8", "rad/s", 1, 0, 100, [25], false, null, "a follower's reading that moves faster is a fault; 0 turns the check off"],
+    ["speed_limit", "u8", "rad/s", 1, 0, 100, [25], false, null, "a follower's reading that moves faster is a fault, and so is a leader's that jumps: it moves faster, and its speed has changed by more within 4 ms. 0 turns both checks off"],
     ["runaway_limit", "u8", "rad", 1/128, 0, 192, [40], false, null, "way of a follower against its voltage of at least 2 V, without slowing down, that becomes a fault; 0 turns the check off"],
     ["stall_volts", "u8", "V", 1/10, 0, 250, [32], false, null, "voltage above which a follower must move: breakaway_volts of joints that have none. 0 turns the check off"],
     ["stall_time", "u8", "s", 1/4, 4, 240, [80], false, null, "time that a joint may be held back before that is a fault"],

@@ -40,6 +40,7 @@ enum class Fault : uint8_t {
   runaway = 11,  // a follower moved against its motor's voltage, faster and faster
   stalled = 12,  // a motor had voltage, but its follower did not move
   memory = 13,  // the running parameters had changed in the board's memory
+  leader_jump = 14,  // a leader's potentiometer jumped
 };
 
 // Why a request was refused.

@@ -23,7 +23,7 @@ using codes::ClutchAction;
 using codes::Clutch;
 
 constexpr uint8_t protocol = 1;
-constexpr uint32_t schema_hash = 0x423FE615;
+constexpr uint32_t schema_hash = 0x67B0D8E0;
 constexpr uint8_t max_payload = 48;
 constexpr uint8_t reply_bit = 0x80;
 
@@ -116,7 +116,7 @@ struct StatusReply {
   State state;  // state of the supervisor
   StopReason stop_reason;  // why the motors last went off
   Fault fault;  // first fault since it was last cleared
-  uint8_t fault_where;  // 0..3 leader pot, 4..7 follower pot (pot faults); 0..3 joint (other faults); 255 none
+  uint8_t fault_where;  // 0..3 leader pot, 4..7 follower pot (pot_low, pot_high, leader_jump); 0..3 joint (other faults); 255 none
   uint32_t tick;  // ticks since boot [ticks]
   uint16_t late_ticks;  // ticks that began before the last one had finished
   uint16_t frames_bad;  // frames refused for their length, coding or CRC (stops at 65535)

@@ -67,7 +67,7 @@ struct __attribute__((packed)) Table {
   uint8_t unrest_rate;  // turns of the error in a second that are unrest; a swing to and fro has two [1/s]
   uint8_t unrest_time;  // time of unrest that becomes a fault [1/10 s]
   uint8_t unrest_action;  // what unrest does: 0 turns the motors off, 1 goes on with the safe controllers, and turns the motors off at the next unrest
-  uint8_t speed_limit;  // a follower's reading that moves faster is a fault; 0 turns the check off [rad/s]
+  uint8_t speed_limit;  // a follower's reading that moves faster is a fault, and so is a leader's that jumps: it moves faster, and its speed has changed by more within 4 ms. 0 turns both checks off [rad/s]
   uint8_t runaway_limit;  // way of a follower against its voltage of at least 2 V, without slowing down, that becomes a fault; 0 turns the check off [1/128 rad]
   uint8_t stall_volts;  // voltage above which a follower must move: breakaway_volts of joints that have none. 0 turns the check off [1/10 V]
   uint8_t stall_time;  // time that a joint may be held back before that is a fault [1/4 s]
