@@ -11,4 +11,4 @@ from greywhale.files.log.layout import Origin
 def write_log(path: Path, seconds: float = 1.0) -> None:
     with LogWriter(path, Origin("0.1.0", "mega2560", 1, 1, 1)) as log:
         for row in range(int(seconds * 1000)):
-            log.append(row / 1000, [0.1] * 4, [0.0] * 4, [0.0] * 4, "following")
+            log.append(row / 1000, [0.1] * 4, [0.0] * 4, [row % 1000 / 1000] * 4, "following")

@@ -10,6 +10,7 @@ import pytest
 
 from greywhale.arm import ArmParameters
 from greywhale.base.errors import UserError
+from greywhale.base.types import show_no_progress
 from greywhale.files import parameter_file
 from greywhale.files.log import Log
 from greywhale.files.log.check import Check
@@ -20,6 +21,8 @@ from greywhale.identify import identify
 from greywhale.identify.checks import check
 from greywhale.identify.controllers import table_of
 from greywhale.identify.data import prepare
+from greywhale.identify.judge import FIT, JudgedLog
+from greywhale.identify.request import IdentificationRequest
 from greywhale.protocol.schema import Board
 from greywhale.protocol.table import ParameterTable
 from tests.identify.conftest import rows
@@ -53,9 +56,52 @@ def slower(log: Log) -> Log:
     return replace(log, origin=replace(log.origin, period_ms=20))
 
 
+def off(log: Log) -> Log:
+    """Somebody moved the arm by hand."""
+    return replace(log, voltage=0.0 * log.voltage, state=np.full(len(log.time), "disabled"))
+
+
+def faulty(log: Log) -> Log:
+    return replace(off(log), state=np.full(len(log.time), "fault"))
+
+
+def powerless(log: Log) -> Log:
+    return replace(log, voltage=0.0 * log.voltage)
+
+
+def led_in_vain(log: Log) -> Log:
+    """The motors had no supply."""
+    return replace(log, follower=0.01 * log.follower)
+
+
+def barely_powered(log: Log) -> Log:
+    """The motors ran for the last second, and nothing says when they followed."""
+    voltage = np.where(log.time[:, None] > log.time[-1] - 1.0, log.voltage, 0.0)
+    return replace(off(log), voltage=voltage)
+
+
+def without_voltage(log: Log, *joints: int) -> Log:
+    voltage = log.voltage.copy()
+    voltage[:, joints] = 0.0
+    return replace(log, voltage=voltage)
+
+
+def three_of_four_at_rest(log: Log) -> Log:
+    """The joint that moves has no voltage."""
+    follower = log.follower.copy()
+    follower[:, 1:] *= 0.0
+    return replace(without_voltage(log, 0), follower=follower)
+
+
 @pytest.mark.parametrize(
     ("spoil", "evidence"),
     [
+        (off, r"the motors were off in all 9.04 s \(state disabled, 0 V\), .*record --enable"),
+        (faulty, r"the motors were off in all 9.04 s \(state fault, 0 V\), .*greywhale info"),
+        (powerless, r"no motor's voltage changes in all 9.04 s \(state following, 0 V\), .*voltage columns"),
+        (led_in_vain, r"no joint moved: .* the leader moved by \d.* rad, so check the motors' supply"),
+        (barely_powered, r"only 2\.0 s of it"),
+        (three_of_four_at_rest, r"joint 0 had 0 V in every row, while its leader moved by \d.* rad and its follower"),
         (short, r"only 2\.0 s of it .* at least 4 s"),
         (still, r"no joint moved: joints 0\.\.3 stayed within 0\.\d+, .* rad"),
         (clipped, r"joint 2 is clipped: its follower reads exactly 2\.5000 rad in \d+ %"),
@@ -80,6 +126,37 @@ def test_good_logs_pass_without_doubt(
 ) -> None:
     for log in (recorded.fit, recorded.second, recorded.changed):
         assert check(prepare(log, 1), white_box, table_of(log, tables)) == []
+
+
+@pytest.mark.parametrize("word", ["disabled", "fault", "boot"])
+def test_a_log_of_another_tool_needs_voltages_but_no_states(
+    recorded: Recorded, white_box: ArmParameters, word: str
+) -> None:
+    log = replace(recorded.fit, state=np.full(len(recorded.fit.time), word))
+    prepared = prepare(log, None)
+    assert check(prepared, white_box, None) == []
+    np.testing.assert_array_equal(prepared.velocity, prepare(recorded.fit, None).velocity)
+
+
+def test_a_joint_without_voltage_is_not_identified_and_named(recorded: Recorded, white_box: ArmParameters) -> None:
+    prepared = prepare(without_voltage(recorded.fit, 0, 2), 1)
+    doubts = check(prepared, white_box, None)
+    assert [one.partition(" had 0 V")[0] for one in doubts] == [
+        f"{recorded.fit.name}: joint {joint}" for joint in (0, 2)
+    ]
+    request = IdentificationRequest(white_box, (JudgedLog(prepared, None, FIT),), 0, show_no_progress)
+    assert request.moving == (1, 3)
+
+
+@pytest.mark.parametrize("validates", [False, True])
+def test_a_log_in_which_an_identified_joint_has_no_voltage_is_refused(
+    recorded: Recorded, white_box: ArmParameters, tables: list[ParameterTable], validates: bool
+) -> None:
+    """It would say that the joint moves by itself."""
+    log = without_voltage(recorded.second, 0)
+    fit, validate = ([recorded.fit], [log]) if validates else ([recorded.fit, log], [])
+    with pytest.raises(UserError, match=f"^{log.name}: joint 0 had 0 V .* another log shows .* leave this one out"):
+        identify(fit, white_box, validate=validate, tables=tables)
 
 
 def test_full_voltage_most_of_the_time_is_a_doubt_only(recorded: Recorded, white_box: ArmParameters) -> None:

@@ -121,7 +121,7 @@ def test_warnings_of_the_identification_go_along(tmp_path: Path) -> None:
             r"\(0\.012 against 0\.01 rad²\), .* its controller, not the arm",
         ),
         ({"covariance": None, "method": "paper"}, "how uncertain .*method paper"),
-        ({"joints": (0, 1, 3)}, r"joint 2 \(wrist pitch\) did not move"),
+        ({"joints": (0, 1, 3)}, r"no motor moved joint 2 \(wrist pitch\) in its logs"),
         ({"parameters": {"supply_mv": 12_000}}, "drive.supply is 15 V, .*supply_mv says 12 V"),
         ({"parameters": {"period_ms": 5}}, "1 ms, .* 5 ms"),
         (

@@ -13,6 +13,7 @@ from greywhale.cli.output import FILE, json_option, option, overwrite_option, sh
 from greywhale.files.log import Log, read_log
 from greywhale.files.log.check import Check
 from greywhale.files.log.condition import Gap
+from greywhale.files.log.driven import tell_powerless
 from greywhale.files.outputs import require_new
 from greywhale.motion import Evaluation, evaluate
 from greywhale.motion.evaluate import EvaluationFacts
@@ -29,7 +30,7 @@ class LogFacts(EvaluationFacts):
     ended_by: str  # what did
     check: Check  # shortened: rows are missing; changed: rows or header are others; unchecked: it has no check
     gaps: list[Gap]  # where more than ten samples in a row are missing
-    remarks: list[str]  # check and gaps in sentences
+    remarks: list[str]  # check, gaps and missing voltages in sentences
 
 
 class Answer(TypedDict):
@@ -58,10 +59,11 @@ def command(logs: tuple[Path, ...], picture: Path | None, overwrite: bool, as_js
     require_new(overwrite, picture)
     if picture is not None:
         kind_of(picture)
-    read, evaluations = [], []
+    read, evaluations, warnings = [], [], []
     for path in logs:
         log = read_log(path)
         evaluations.append(evaluate(log))
+        warnings.append([*log.remarks, *(f"{log.name}: {told}." for told in tell_powerless(log))])
         read.append(log if picture is not None else log.without_samples())
     results: list[LogFacts] = [
         {
@@ -71,12 +73,12 @@ def command(logs: tuple[Path, ...], picture: Path | None, overwrite: bool, as_js
             "ended_by": log.ended_by,
             "check": log.condition.check,
             "gaps": list(log.condition.gaps),
-            "remarks": list(log.remarks),
+            "remarks": remarks,
             **evaluation.as_dict(),
         }
-        for log, evaluation in zip(read, evaluations, strict=True)
+        for log, evaluation, remarks in zip(read, evaluations, warnings, strict=True)
     ]
-    text = "\n\n".join(_text(log, evaluation) for log, evaluation in zip(read, evaluations, strict=True))
+    text = "\n\n".join(map(_text, read, evaluations, warnings))
     answer: Answer = {"logs": results}
     if picture is not None:
         _draw(picture, read)
@@ -94,7 +96,7 @@ def _draw(picture: Path, logs: list[Log]) -> None:
     draw_following(picture, [trace(*one) for one in zip(logs, names, strict=True)], "Leader and follower")
 
 
-def _text(log: Log, evaluation: Evaluation) -> str:
+def _text(log: Log, evaluation: Evaluation, warnings: list[str]) -> str:
     notes = [f"{counted(evaluation.samples, 'sample')}, {_covered(evaluation)}"]
     if log.dropped:
         notes.append(f"{log.dropped} dropped")
@@ -125,7 +127,7 @@ def _text(log: Log, evaluation: Evaluation) -> str:
         for number, joint in enumerate(evaluation.joints)
         if evaluation.following and not joint.follows
     ]
-    return "\n".join([*lines, *(f"Warning: {remark}" for remark in log.remarks)])
+    return "\n".join([*lines, *(f"Warning: {one}" for one in warnings)])
 
 
 def _covered(evaluation: Evaluation) -> str:

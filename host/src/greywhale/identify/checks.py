@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from typing import NoReturn
+
 import numpy as np
 from numpy.typing import NDArray
 
 from greywhale.arm import ArmParameters
 from greywhale.base.errors import UserError
 from greywhale.base.types import Floats
+from greywhale.files.log.driven import MOTION_RAD, tell_off, tell_undriven
 from greywhale.identify.data import Prepared, rows_in
 from greywhale.protocol.firmware import JOINTS
 from greywhale.protocol.table import ParameterTable
 
 SHORTEST_S = 4.0
-SMALLEST_MOTION = 0.1
 # A reading that stays exactly at its extreme value for this share of the log, that far out (rad), is clipped.
 CLIPPED_SHARE = 0.01
 CLIPPED_FROM = 2.3
@@ -27,6 +30,9 @@ FITTING = 0.7
 def check(prepared: Prepared, arm: ArmParameters, table: ParameterTable | None) -> list[str]:
     """Refuse a log that cannot be used; doubts that do not forbid it come back as sentences."""
     log = prepared.log
+    off = tell_off(log)
+    if off:
+        raise UserError(f"{log.name}: {off}.")
     used = rows_in(prepared.runs, len(log.time))
     seconds = sum(run.period * (run.stop - run.start - 1) for run in prepared.runs)
     if seconds < SHORTEST_S:
@@ -36,12 +42,10 @@ def check(prepared: Prepared, arm: ArmParameters, table: ParameterTable | None) 
         )
     leader, follower, voltage = log.leader[used], log.follower[used], log.voltage[used]
     if not prepared.moving.any():
-        ranges = ", ".join(f"{np.ptp(follower[:, joint]):.3f}" for joint in range(JOINTS))
-        raise UserError(
-            f"{log.name}: no joint moved: joints 0..3 stayed within {ranges} rad, but {SMALLEST_MOTION:g} rad at least "
-            "are needed; move the leader while recording."
-        )
-    doubts = []
+        _refuse_still(log.name, leader, follower)
+    doubts = [f"{log.name}: {told}." for told in tell_undriven(log, used).values()]
+    if not prepared.shown.any():
+        raise UserError(doubts[0])
     for joint in np.flatnonzero(prepared.moving):
         where = f"{log.name}: joint {joint}"
         _refuse_clipped(where, follower[:, joint])
@@ -49,6 +53,29 @@ def check(prepared: Prepared, arm: ArmParameters, table: ParameterTable | None) 
         doubts += _supply(where, voltage[:, joint], arm)
     _refuse_other_period(prepared, table, used)
     return doubts
+
+
+def _refuse_still(name: str, leader: Floats, follower: Floats) -> NoReturn:
+    ranges = ", ".join(f"{np.ptp(follower[:, joint]):.3f}" for joint in range(JOINTS))
+    led = float(np.ptp(leader, axis=0).max())
+    remedy = "move the leader while recording"
+    if led > MOTION_RAD:
+        remedy = f"the leader moved by {led:.2g} rad, so check the motors' supply and the follower's potentiometers"
+    raise UserError(
+        f"{name}: no joint moved: joints 0..3 stayed within {ranges} rad, but {MOTION_RAD:g} rad at least are needed; "
+        f"{remedy}."
+    )
+
+
+def refuse_undriven(prepared: Prepared, joints: Sequence[int]) -> None:
+    """Refuse a log in which one of the identified `joints` moved without its motor: it would mislead the fit."""
+    log = prepared.log
+    for joint, told in tell_undriven(log, rows_in(prepared.runs, len(log.time))).items():
+        if joint in joints:
+            raise UserError(
+                f"{log.name}: {told}; another log shows how voltages move this joint, so leave this one out or record "
+                "it again."
+            )
 
 
 def _refuse_clipped(where: str, follower: Floats) -> None:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from greywhale.arm.parameters import USUAL_TRACK_RAD
 from greywhale.base.types import Floats
 from greywhale.files.log import Log
+from greywhale.files.log.driven import MOTION_RAD, driven_rows, undriven
 from greywhale.motion.runs import Run, gap_free_runs
 from greywhale.protocol.firmware import CONVERSIONS, JOINTS, TICK_S
 
@@ -53,6 +54,12 @@ class Prepared:
     places: Floats  # in the potentiometers' play, see `Windows`
     noise: Floats  # rad, standard deviation of a reading, per joint
     moving: NDArray[np.bool_]  # per joint
+    undriven: tuple[int, ...]  # joints without a voltage that changes
+
+    @property
+    def shown(self) -> NDArray[np.bool_]:
+        """Whether the log shows how voltages move a joint, (4,)."""
+        return self.moving & ~np.isin(np.arange(JOINTS), self.undriven)
 
 
 @dataclass(frozen=True)
@@ -83,8 +90,7 @@ def prepare(log: Log, filter_shift: int | None) -> Prepared:
     """Find the usable stretches. Velocities come from local quadratic fits, noise from the quietest moments."""
     from scipy.signal import savgol_filter  # slow to import
 
-    following = log.state == "following"
-    wanted = following if following.any() else np.ones(len(log.time), dtype=bool)
+    wanted = driven_rows(log)
     period = float(np.median(np.diff(log.time)))
     # Long enough for a window. A few rows may be missing or late, as voltages change little meanwhile.
     least = max(8, round(WINDOW_S / period) + 2)
@@ -100,9 +106,9 @@ def prepare(log: Log, filter_shift: int | None) -> Prepared:
     used = rows_in(runs, len(log.time))
     delay = 0.0 if filter_shift is None else CONVERSION_S + TICK_S * ((1 << filter_shift) - 1)
     noise = _noise(log.follower - smooth, used, size)
-    moving = np.array([bool(used.any() and np.ptp(log.follower[used, joint]) > 0.1) for joint in range(JOINTS)])
+    moving = np.array([bool(used.any() and np.ptp(log.follower[used, joint]) > MOTION_RAD) for joint in range(JOINTS)])
     places = _places(velocity, runs)
-    return Prepared(log, runs, period, delay, velocity, acceleration, places, noise, moving)
+    return Prepared(log, runs, period, delay, velocity, acceleration, places, noise, moving, undriven(log, used))
 
 
 def pot_noise(log: Prepared, filter_shift: int, supply: float) -> Floats:

@@ -31,8 +31,8 @@ class IdentificationRequest:
 
     @property
     def moving(self) -> tuple[int, ...]:
-        """Joints that at least one fitted log moves."""
-        return tuple(joint for joint in range(JOINTS) if any(one.log.moving[joint] for one in self.fitted))
+        """Joints that the motors move in at least one fitted log."""
+        return tuple(joint for joint in range(JOINTS) if any(one.log.shown[joint] for one in self.fitted))
 
     def loops(self) -> list[Loop]:
         """The fitted logs' closed loops, or none where the controller of one is not known."""

@@ -58,6 +58,8 @@ def identify(
     refuse_shared(logs, validate)
     subjects, doubts = _subjects(logs, validate, arm, tables)
     task = IdentificationRequest(arm, tuple(subjects), seed, report or show_no_progress, begin)
+    for subject in subjects:
+        checks.refuse_undriven(subject.log, task.moving)
     return _judged(arm, method, seed, _find(task, method), subjects, (*_remarks(logs, validate), *doubts))
 
 
@@ -69,6 +71,8 @@ def validated(
     refuse_shared(logs, validate)
     known = [subject.table for subject in outcome.subjects if subject.table is not None]
     subjects, doubts = _subjects(logs, validate, outcome.white_box, (*known, *tables))
+    for subject in subjects:
+        checks.refuse_undriven(subject.log, outcome.found.joints)
     remarks = (*_remarks(logs, validate), *doubts)
     return _judged(outcome.white_box, outcome.method, outcome.seed, outcome.found, subjects, remarks)
 

@@ -31,6 +31,7 @@ from threadpoolctl import threadpool_limits
 from greywhale.base.errors import UserError
 from greywhale.base.types import Floats, PerJoint
 from greywhale.files.log import Log
+from greywhale.files.log.driven import following_rows
 from greywhale.motion.delay import correlation_delay, onset_delay
 from greywhale.motion.following import follows
 from greywhale.motion.runs import REST_RAD, REST_S, Run, first_part, gap_free_runs, last_part, resting
@@ -141,8 +142,7 @@ class Evaluation:
 
 def evaluate(log: Log) -> Evaluation:
     """Measure every joint of a log."""
-    following = log.state == "following"
-    measured = following if following.any() else np.ones(len(log.time), dtype=bool)
+    measured = following_rows(log)
     runs = gap_free_runs(log.time, measured)
     if not runs:
         raise UserError(
@@ -161,7 +161,7 @@ def evaluate(log: Log) -> Evaluation:
         total_mse=sum(joints[number].mse for number in log.joints_in_use),
         samples=int(measured.sum()),
         duration_s=sum(run.period * (run.stop - run.start - 1) for run in runs),
-        following=bool(following.any()),
+        following=bool((log.state == "following").any()),
         rests_s=tuple(rests),
         joints_in_use=log.joints_in_use,
         span_s=float(log.time[-1] - log.time[0]),

@@ -16,6 +16,7 @@ import numpy as np
 from greywhale.base.errors import BadUsage
 from greywhale.base.types import Floats
 from greywhale.files.log import Log
+from greywhale.files.log.driven import following_rows
 from greywhale.motion import evaluate
 from greywhale.pictures import looks
 from greywhale.pictures.kinds import kind_of
@@ -62,8 +63,7 @@ def trace(log: Log, label: str, supply_v: float | None = None) -> Trace:
         table = ParameterTable.defaults()
     if supply_v is None and table is not None:
         supply_v = table.supply_v
-    following = log.state == "following"
-    part = following if following.any() else np.ones(len(log.time), dtype=bool)
+    part = following_rows(log)
     time = log.time[part]
     mse = tuple(joint.mse for joint in evaluate(log).joints)
     voltage = log.voltage[part] if log.voltage.shape[1] else None

@@ -182,7 +182,7 @@ def doubt_missing_covariance(arm: ArmParameters, facts: Identification) -> Itera
         return
     named = " and ".join(f"joint {joint} ({JOINT_NAMES[joint]})" for joint in still)
     yield Doubt(
-        f"{named} did not move in its logs, so nothing of {'it' if len(still) == 1 else 'them'} was identified",
+        f"no motor moved {named} in its logs, so nothing of {'it' if len(still) == 1 else 'them'} was identified",
         "record with every joint moving by half a radian or more and identify again",
     )
 

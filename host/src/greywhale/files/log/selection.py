@@ -13,6 +13,7 @@ from dataclasses import replace
 import numpy as np
 
 from greywhale.base.types import Floats
+from greywhale.files.log.driven import driven_rows
 from greywhale.files.log.reader import Log
 
 # A log with more than this is cut down to it, s. Identifying takes a time that grows with the length; after this a log
@@ -49,9 +50,8 @@ def informative(log: Log, most_s: float = MOST_S) -> Log:
 
 
 def _pieces(log: Log) -> list[slice]:
-    """Pieces of equal length without a gap, in which the motors followed (or, where they never did, all)."""
-    following = log.state == "following"
-    wanted = following if following.any() else np.ones(len(log.time), dtype=bool)
+    """Pieces of equal length without a gap, in which the motors followed (or, where they never did, with a voltage)."""
+    wanted = driven_rows(log)
     steps = np.diff(log.time)
     period = float(np.median(steps))
     length = max(2, round(_PIECE_S / period))

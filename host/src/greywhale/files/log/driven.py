@@ -1,0 +1,90 @@
+"""Which rows of a log show motors at work, and which joints had no voltage that could have moved them."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from greywhale.base.types import Floats
+from greywhale.files.log.reader import Log
+
+# A voltage that changes by less than this (V) moves no motor: it is less than a step of the PWM.
+LEAST_V = 0.04
+# A motor that had no voltage for longer than this (s), to either side, was off; a controller at rest may pause.
+_OFF_S = 1.0
+# A joint that stays within this (rad) does not move.
+MOTION_RAD = 0.1
+_RECORD = "record with `greywhale record --enable`"
+_REMEDIES = {
+    "fault": "`greywhale info` names the fault; clear it, then record again",
+    "following": "check that the voltage columns hold what moved the motors",
+}
+
+
+def following_rows(log: Log) -> NDArray[np.bool_]:
+    """The rows (rows,) in which the motors followed; all of a log that has none, such as one of another tool."""
+    following: NDArray[np.bool_] = log.state == "following"
+    return following if following.any() else np.ones(len(log.time), dtype=bool)
+
+
+def driven_rows(log: Log) -> NDArray[np.bool_]:
+    """The same, but in a log that has none without those far from any voltage: the motors were off there."""
+    powered = np.flatnonzero((np.abs(log.voltage) >= LEAST_V).any(axis=1))
+    if not powered.size or (log.state == "following").any():
+        return following_rows(log)
+    after = np.searchsorted(powered, np.arange(len(log.time)))
+    times = log.time[powered]
+    late = log.time - times[np.maximum(after - 1, 0)]
+    early = times[np.minimum(after, len(powered) - 1)] - log.time
+    return ((late >= 0.0) & (late <= _OFF_S)) | ((early >= 0.0) & (early <= _OFF_S))
+
+
+def undriven(log: Log, rows: NDArray[np.bool_]) -> tuple[int, ...]:
+    """The joints in use whose voltage is the same in all these rows."""
+    volts = log.voltage[rows]
+    return tuple(joint for joint in log.joints_in_use if not len(volts) or np.ptp(volts[:, joint]) < LEAST_V)
+
+
+def tell_off(log: Log) -> str:
+    """That no joint had a voltage, with the cause and what to do, in a clause that follows the log's name; "" where
+    one had.
+    """
+    rows = driven_rows(log)
+    if undriven(log, rows) != log.joints_in_use:
+        return ""
+    states = list(dict.fromkeys(log.state[rows].tolist()))
+    volts = _volts(log, rows, log.joints_in_use[0])
+    off = "following" not in states and volts == "0 V"
+    cause = "the motors were off" if off else "no motor's voltage changes"
+    remedy = next((text for state, text in _REMEDIES.items() if state in states), _RECORD)
+    return (
+        f"{cause} in all {log.time[-1] - log.time[0]:.3g} s (state {' and '.join(states)}, {volts}), so it does not "
+        f"show how voltages move the arm; {remedy}"
+    )
+
+
+def tell_undriven(log: Log, rows: NDArray[np.bool_]) -> dict[int, str]:
+    """The same of single joints that moved or were led in these rows: a clause for each."""
+    told = {}
+    for joint in undriven(log, rows):
+        led, moved = (_range(angles, rows, joint) for angles in (log.leader, log.follower))
+        if max(led, moved) > MOTION_RAD:
+            told[joint] = (
+                f"joint {joint} had {_volts(log, rows, joint)} in every row, while its leader moved by {led:.2g} rad "
+                f"and its follower by {moved:.2g} rad: check its motor's wires and its voltage column"
+            )
+    return told
+
+
+def tell_powerless(log: Log) -> list[str]:
+    """Either, for whoever only measures a log: clauses that follow its name."""
+    off = tell_off(log)
+    return [off] if off else list(tell_undriven(log, following_rows(log)).values())
+
+
+def _volts(log: Log, rows: NDArray[np.bool_], joint: int) -> str:
+    return f"{round(float(np.median(log.voltage[rows, joint])), 2) + 0.0:g} V"
+
+
+def _range(angles: Floats, rows: NDArray[np.bool_], joint: int) -> float:
+    return float(np.ptp(angles[rows, joint]))
