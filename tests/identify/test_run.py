@@ -13,7 +13,8 @@ from greywhale.arm.plants import column
 from greywhale.files.arm import load_arm
 from greywhale.files.log.condition import Condition
 from greywhale.identify import IdentificationResult, identify, validated
-from greywhale.identify.judge import CHANGED, FIT, SECOND, LogVerdict, judge, warnings_of
+from greywhale.identify.judge import CHANGED, FIT, SECOND, LogVerdict, judge, undecided_of, warnings_of
+from greywhale.identify.uncertainty import LARGEST_CONDITION
 from greywhale.motion import human_reaches
 from greywhale.protocol.table import ParameterTable
 from greywhale.simulate import plant_row
@@ -171,6 +172,42 @@ def test_chance_decides_whether_a_model_is_worse() -> None:
     assert "by more than chance explains (2.4 against 2 rad²)" in warnings_of([worse])[0]
 
 
+@pytest.mark.parametrize("chance", [2.5, 50.0, 1e6])
+@pytest.mark.parametrize(
+    ("times", "words"), [(24.4, "24.4 times worse"), (3.0, "3 times worse"), (0.1, "90.0 % better")]
+)
+def test_a_less_certain_model_is_not_judged_more_kindly(chance: float, times: float, words: str) -> None:
+    """Its uncertainty excuses no more than the white box's own error."""
+    one = replace(verdict(SECOND, 0.0, times, chance), white_box=(1.0, 0.0, 0.0, 0.0))
+    assert one.is_worse is (times > 2.0)
+    assert not one.is_as_good
+    assert one.comparison == words
+    assert "these logs decide nothing" in undecided_of([one])[0]
+    certain = replace(one, chance=0.3)
+    assert undecided_of([certain]) == []
+    assert certain.is_worse is (times > 1.3)
+
+
+@pytest.mark.parametrize("model", [1e-5, 9e-5])
+def test_chance_decides_where_nobody_cares_for_the_difference(model: float) -> None:
+    """A white box that is exact has the error of the converter's steps alone."""
+    one = replace(verdict(SECOND, 0.0, model, 9.5e-5), white_box=(9e-6, 0.0, 0.0, 0.0))
+    assert one.is_as_good
+    assert not one.is_worse
+    assert undecided_of([one]) == []
+
+
+@pytest.mark.slow
+def test_a_condition_number_beyond_rounding_is_told_as_a_least(outcome: IdentificationResult) -> None:
+    told = [
+        next(line for line in replace(outcome, found=replace(outcome.found, condition=value)).text().splitlines()
+             if line.startswith("Condition number"))
+        for value in (2e6, LARGEST_CONDITION)
+    ]  # fmt: skip
+    assert "information: 2e+06. " in told[0]
+    assert "information: at least 1e+13. " in told[1]
+
+
 @pytest.mark.slow
 def test_chance_is_what_plants_that_the_fit_allows_are_worse_by(
     outcome: IdentificationResult, white_box: ArmParameters
@@ -211,7 +248,7 @@ def test_second_round_is_as_good_as_the_arm_that_it_began_with(
     text = again.text()
     doubts = load_model(tmp_path / "again.toml", force=True).doubts
     assert len(doubts) == 1
-    assert "joint 0 (base yaw) and joint 2 (wrist pitch) and joint 3 (wrist roll) did not move" in doubts[0]
+    assert "no motor moved joint 0 (base yaw) and joint 2 (wrist pitch) and joint 3 (wrist roll) in its" in doubts[0]
     if begun == "model":
         assert "white box" not in text
         assert "as good as the model before, as far as noise lets tell" in text

@@ -32,6 +32,9 @@ UNEXPLAINED = 0.5
 WORSE = 4.0
 SMALL_RAD = 5e-3
 CLOSED_LOOP, WINDOWS = "closed loop", "logged voltages, windows"
+# Chance excuses an error up to this, rad² of all joints together, or up to the white box's own, whichever is larger: of
+# a model that is less certain nothing is known.
+EXCUSED = JOINTS * SMALL_RAD**2
 SURE = 0.95  # a model that is further from the log than this share of those that the fit allows is not so by chance
 FIT, SECOND, CHANGED = "fit", "validation", "validation, changed controller"
 
@@ -125,13 +128,36 @@ class LogVerdict:
 
     @property
     def is_worse(self) -> bool:
-        """Whether the model is further from the log than the white box is, by more than chance explains."""
-        return self.excess > self.chance
+        """Whether the model is further from the log than the white box is, by more than chance excuses."""
+        return self.excess > self._excused
 
     @property
     def is_as_good(self) -> bool:
-        """Whether chance explains which of both is nearer to the log."""
-        return abs(self.excess) <= self.chance
+        """Whether chance explains which of both is nearer to the log, of a model that is certain enough."""
+        return abs(self.excess) <= self._excused and not self.is_undecided
+
+    @property
+    def is_undecided(self) -> bool:
+        """Whether the model is so uncertain that the log decides nothing: the fit allows models that are further off
+        than it, by more than the whole error of the white box.
+        """
+        return self.chance > self._most_excused
+
+    @property
+    def comparison(self) -> str:
+        """How the model does beside the white box, such as "3.1 % better" or "24 times worse"."""
+        before, after = sum(self.white_box), sum(self.model)
+        if before > 0.0 and 2.0 * before <= after:
+            return f"{after / before:.3g} times worse"
+        return f"{100 * abs(self.improvement):.1f} % {'worse' if self.improvement < 0.0 else 'better'}"
+
+    @property
+    def _most_excused(self) -> float:
+        return max(sum(self.white_box), EXCUSED)
+
+    @property
+    def _excused(self) -> float:
+        return min(self.chance, self._most_excused)
 
     @property
     def excess(self) -> float:
@@ -230,6 +256,17 @@ def warnings_of(verdicts: Sequence[LogVerdict]) -> list[str]:
             "controller, not the arm. Do not tune with it; check supply, controller file and directions, record again."
         )
     return sentences
+
+
+def undecided_of(verdicts: Sequence[LogVerdict]) -> list[str]:
+    """Sentences for logs on which the model is too uncertain to be better or worse."""
+    return [
+        f"{verdict.name} ({verdict.role}): these logs decide nothing: models that fit them as well differ here by "
+        f"{verdict.chance:.3g} rad², more than the whole error of the arm file ({sum(verdict.white_box):.3g} rad²); "
+        "record livelier motion of all joints."
+        for verdict in verdicts
+        if verdict.is_undecided
+    ]
 
 
 def doubts_of(verdicts: Sequence[LogVerdict], joints: Sequence[int]) -> tuple[str, ...]:

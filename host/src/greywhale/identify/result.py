@@ -17,6 +17,7 @@ from greywhale.identify.combinations import CombinationFacts
 from greywhale.identify.data import pot_noise
 from greywhale.identify.found_model import EstimateFacts, FoundModel, ParameterEstimate, RivalFacts
 from greywhale.identify.judge import FIT, JudgedLog, LogVerdict, VerdictFacts
+from greywhale.identify.uncertainty import LARGEST_CONDITION
 from greywhale.protocol.joints import Joints
 
 
@@ -36,7 +37,7 @@ class OrderFacts(TypedDict):
 
 
 class KnownFacts(TypedDict):
-    fisher_condition: NotRequired[float]  # condition number of the Fisher information
+    fisher_condition: NotRequired[float]  # condition number of the Fisher information; 1e13 means at least that
     covariance: NotRequired[list[list[float]]]  # over the searched numbers, in the order of `parameter`
     parameters: NotRequired[dict[str, int]]  # raw, of the logs, that differ from the defaults
     board: NotRequired[str]  # mega2560 or nano328
@@ -191,9 +192,10 @@ class IdentificationResult:
             for rival in self.found.rivals:
                 lines.append(f"Nearly as good: {rival.order}.")
             lines.append(f"Model order: {self.found.order} (by held-out data).")
-            times = f"{self.found.condition**0.5:,.0f}"
-            lines.append(f"Condition number of the Fisher information: {self.found.condition:.2g}. So the best known")
-            lines.append(f"combination of parameters is {times} times as well known as the least known.")
+            least = "at least " if self.found.condition >= LARGEST_CONDITION else ""
+            times = f"{least}{self.found.condition**0.5:,.0f}"
+            lines.append(f"Condition number of the Fisher information: {least}{self.found.condition:.2g}. So the best")
+            lines.append(f"known combination of parameters is {times} times as well known as the least known.")
             lines += ["", f"{'parameter':18} {self.begun:>12} {'model':>11} {'std':>9}  unit"]
             for one in self.estimates:
                 deviation = "" if one.deviation is None else f"{one.deviation:.2g}"
@@ -228,4 +230,4 @@ def _table(verdict: LogVerdict, begun: str, joints: Joints) -> list[str]:
 def _comparison(verdict: LogVerdict, begun: str) -> str:
     if verdict.is_as_good:
         return f"as good as the {begun}, as far as noise lets tell"
-    return f"{100 * abs(verdict.improvement):.1f} % {'worse' if verdict.improvement < 0.0 else 'better'}"
+    return f"{verdict.comparison}{'; these logs decide nothing' if verdict.is_undecided else ''}"

@@ -94,7 +94,7 @@ def _judged(
         seed=seed,
         found=found,
         verdicts=verdicts,
-        warnings=(*remarks, *judge.warnings_of(verdicts)),
+        warnings=(*remarks, *judge.warnings_of(verdicts), *judge.undecided_of(verdicts)),
         doubts=judge.doubts_of(verdicts, found.joints),
         subjects=tuple(subjects),
     )

@@ -33,8 +33,8 @@ OPEN = {
 }
 # These matter little: to know them within a factor of e is enough.
 OPEN_FACTOR = {"drag": 1.0, "teeth": 1.0}
-# Directions of the search space below this share of the largest eigenvalue are left out of the inverse.
-SMALLEST_EIGENVALUE = 1e-13
+# Beyond this condition number the smallest eigenvalue is rounding.
+LARGEST_CONDITION = 1e13
 
 EXCITATION = {
     "alpha": "swing a known weight, or hold poses in which gravity pulls differently; without either, torque per volt "
@@ -88,7 +88,8 @@ def uncertainty(residual: WindowResidual, space: Space, x: Floats, joints: Seque
     # Each number in its own natural size: a factor of e, or a step that makes it another value of the quantity.
     size = np.array([1.0 if space.kind(n).logarithmic else OPEN[one.kind] for n, one in enumerate(space.parameters)])
     values = np.linalg.eigvalsh(information * np.outer(size, size))
-    condition = float(values[-1]) / max(float(values[0]), SMALLEST_EIGENVALUE * float(values[-1]))
+    known = float(values[0]) * LARGEST_CONDITION > float(values[-1])
+    condition = float(values[-1]) / float(values[0]) if known else LARGEST_CONDITION
     gradients = np.zeros((residual.clusters.max() + 1, len(space)))
     np.add.at(gradients, residual.clusters, jacobian * numbers[0][:, None])
     covariance = _combine(information, gradients.T @ gradients, np.diag(space.doubts() ** -2.0))
@@ -125,8 +126,8 @@ def open_beyond(parameter: Parameter) -> float:
 
 def _describe_open(space: Space, x: Floats, deviations: Floats, joints: Sequence[int]) -> list[str]:
     sentences = [
-        f"joint {joint} ({JOINT_NAMES[joint]}): it did not move, so nothing of it was identified and the values of the "
-        "arm file stay; move it by half a radian or more"
+        f"joint {joint} ({JOINT_NAMES[joint]}): its motor did not move it, so nothing of it was identified and the "
+        "values of the arm file stay; lead it by half a radian or more"
         for joint in space.arm.joints_in_use
         if joint not in joints
     ]
