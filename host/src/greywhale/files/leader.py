@@ -11,7 +11,7 @@ import numpy as np
 
 from greywhale.base.errors import UserError
 from greywhale.base.formats import csv_file
-from greywhale.base.formats.whole import refuse_devices, write_text
+from greywhale.base.formats.whole import write_text
 from greywhale.base.types import Floats
 from greywhale.files.log.check import add_rows, facts_of
 from greywhale.files.log.condition import judge_condition
@@ -29,8 +29,8 @@ COLUMNS = ("time_s", *(f"leader_{joint}" for joint in range(JOINTS)))
 def load_leader(path: str | Path) -> Trajectory:
     """Read and check a leader file or a log, a block after another; its first row becomes time 0."""
     each_time, each_angle, lines = [np.empty(0)], [np.empty((0, JOINTS))], [np.empty(0, dtype=np.int64)]
-    before, crc, is_log = -np.inf, 0, _is_log(path)
-    with csv_file.CsvFile(path, LOG_COLUMNS if is_log else COLUMNS) as file:
+    before, crc = -np.inf, 0
+    with csv_file.CsvFile(path, COLUMNS, LOG_COLUMNS) as file:
         for block in file.blocks():
             table = file.table(block)
             each_time.append(table.increasing("time_s", before))
@@ -40,6 +40,7 @@ def load_leader(path: str | Path) -> Trajectory:
             crc = add_rows(crc, block.data)
         time_s, angles = np.concatenate(each_time), np.concatenate(each_angle)
         file.require_rows(len(time_s), 2)
+        is_log = file.columns is LOG_COLUMNS
         told = judge_condition(file.name, facts_of(file.comments), crc, time_s).remarks if is_log else ()
     wrong = _find_wrong(time_s, angles)
     if wrong is not None:
@@ -72,14 +73,3 @@ def save_leader(path: str | Path, trajectory: Trajectory) -> None:
     for time_s, angles in zip(trajectory.time_s, trajectory.angles, strict=True):
         lines.append(f"{time_s:.4f}," + ",".join(f"{angle:.5f}" for angle in angles))
     write_text(path, "\n".join(lines) + "\n")
-
-
-def _is_log(path: str | Path) -> bool:
-    """Whether the column names are a log's. A file that cannot be read counts as none; its reader refuses it."""
-    try:
-        refuse_devices(path)
-        with open(path, encoding="utf-8-sig") as file:
-            heading = next((line for line in file if not line.startswith("#")), "")
-    except (OSError, UnicodeDecodeError):
-        return False
-    return [cell.strip() for cell in heading.split(",")] == list(LOG_COLUMNS)

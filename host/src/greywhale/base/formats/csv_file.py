@@ -1,7 +1,8 @@
 """Reads a CSV file with a fixed set of columns; a bad cell is named by file, line and column.
 
-Lines that start with `#` before the column names are comments; logs keep their facts there. Empty lines say nothing. A
-file is read in blocks of whole lines, so that one of an hour needs no more memory than what is made of it.
+Lines that start with `#` are comments; logs keep their facts in those before the column names. Empty lines say nothing.
+What spreadsheets make of such a file is read too (`csv_dialect`). A file is read in blocks of whole lines, so that one
+of an hour needs no more memory than what is made of it.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from greywhale.base.errors import UserError, counted, cut, os_reason
+from greywhale.base.formats import csv_dialect
 from greywhale.base.formats.whole import refuse_devices
 
 # Bytes that are read at once; no line is longer.
@@ -43,7 +45,8 @@ class CsvTable:
             try:
                 values[row] = number(cell)
             except ValueError:
-                raise self.error(row, column, f"{cut(repr(cell))} is not a number") from None
+                remedy = "; numbers have a decimal point, and no other comma" if "," in cell else ""
+                raise self.error(row, column, f"{cut(repr(cell))} is not a number{remedy}") from None
             if not math.isfinite(values[row]):
                 raise self.error(row, column, f"{cut(cell)} is not a finite number")
         return values
@@ -78,13 +81,19 @@ class Block:
 
 
 class CsvFile:
-    """A file opened for reading, a context: `comments` and the checked column names are read, `blocks` are not."""
+    """A file opened for reading, a context: `comments` and the checked `columns` are read, `blocks` are not.
 
-    def __init__(self, path: str | Path, columns: Sequence[str]) -> None:
+    Its columns must be one of the sets in `wanted`, in that order.
+    """
+
+    def __init__(self, path: str | Path, *wanted: Sequence[str]) -> None:
         self.name = str(path)
         self.comments: tuple[str, ...] = ()
-        self._wanted = columns
+        self.columns: Sequence[str] = wanted[0]
+        self._wanted = wanted
         self._path = path
+        self._separator = ","
+        self._marks = b""  # decimal ones, in a file whose separator is no comma
 
     def __enter__(self) -> CsvFile:
         try:
@@ -103,7 +112,10 @@ class CsvFile:
         self._file.close()
 
     def blocks(self, torn: bool = False) -> Iterator[Block]:
-        """The lines below the column names; a last line without an end is dropped if it may be `torn`, else refused."""
+        """The lines below the column names, without comments, with commas between the cells and decimal points.
+
+        A last line without an end is dropped if it may be `torn`, else refused.
+        """
         line, offset, rest = self._line, self._offset, b""
         try:
             while data := self._file.read(BLOCK):
@@ -112,11 +124,12 @@ class CsvFile:
                 rest = data[end:]
                 self._refuse_long(rest, line + data.count(b"\n", 0, end))
                 if end:
-                    yield Block(data[:end], line, offset)
+                    for lines, before, part in csv_dialect.without_comments(data[:end]):
+                        yield Block(self._with_commas(part), line + lines, offset + before)
                     line, offset = line + data.count(b"\n", 0, end), offset + end
         except OSError as error:
             raise self._cannot_be_read(error) from None
-        if rest and not torn:
+        if rest and not torn and not rest.lstrip(b' \t"').startswith(b"#"):
             raise UserError(
                 f"{self.name}, line {line}: the file ends in the middle of this line; copy it again, or end the line "
                 "(Enter) if it is whole."
@@ -126,17 +139,20 @@ class CsvFile:
         lines: list[int] = []
         rows: list[list[str]] = []
         for number, line in enumerate(_text(block, self.name).split("\n")[:-1], block.line):
-            if not line.strip():
+            cells = _cells(line.removesuffix("\r"), self.name, number, least=len(self.columns))
+            if not any(cells):
                 continue
-            cells = _cells(line.removesuffix("\r"), self.name, number)
-            if len(cells) != len(self._wanted):
+            if len(cells) != len(self.columns):
+                raise UserError(f"{self.name}, line {number}: {_row_problem(cells, self.columns)}.")
+            if cells == list(self.columns):
                 raise UserError(
-                    f"{self.name}, line {number}: {len(cells)} values where {len(self._wanted)} columns are named."
+                    f"{self.name}, line {number}: the column names stand here again, as where two files were joined; "
+                    "put what begins here into a file of its own."
                 )
             lines.append(number)
             rows.append(cells)
-        transposed = list(zip(*rows, strict=True)) if rows else [() for _ in self._wanted]
-        return CsvTable(self.name, self.comments, tuple(lines), dict(zip(self._wanted, transposed, strict=True)))
+        transposed = list(zip(*rows, strict=True)) if rows else [() for _ in self.columns]
+        return CsvTable(self.name, self.comments, tuple(lines), dict(zip(self.columns, transposed, strict=True)))
 
     def require_rows(self, found: int, least: int) -> None:
         if found < least:
@@ -151,22 +167,49 @@ class CsvFile:
             except OSError as error:
                 raise self._cannot_be_read(error) from None
             if not data:
-                raise UserError(f"{self.name}: the file has no columns; it must start with {','.join(self._wanted)}.")
+                raise UserError(f"{self.name}: the file has no columns; it must start with {','.join(self.columns)}.")
             self._refuse_long(b"" if data.endswith(b"\n") else data, self._line)
             text = _text(
                 Block(data.removeprefix(_BOM) if self._line == 1 else data, self._line, self._offset), self.name
             )
             self._line, self._offset = self._line + 1, self._offset + len(data)
-            if text.startswith("#"):
-                comments.append(text[1:].strip())
-            elif text.strip():
+            if "\r" in text.rstrip("\r\n"):
+                raise UserError(f"{self.name}: its lines end with CR alone; save it with LF or CR LF at the ends.")
+            comment = csv_dialect.comment_in(text)
+            if comment is not None:
+                comments.append(comment)
+            elif text.strip(" \r\n" + "".join(csv_dialect.SEPARATORS)):
                 break
         self.comments = tuple(comments)
-        found = [cell.strip() for cell in _cells(text.rstrip("\r\n"), self.name, self._line - 1)]
-        if found != list(self._wanted):
-            if "=" in text or text.startswith("["):
-                raise UserError(f"{self.name}: this is TOML, but a log or a motion (CSV) is needed here.")
-            raise UserError(f"{self.name}, line {self._line - 1}: {_column_problem(found, self._wanted)}.")
+        self._check_columns(text.rstrip("\r\n"))
+
+    def _check_columns(self, text: str) -> None:
+        """Find the separator and the set of columns by the line with their names; refuse all others."""
+        self._separator = csv_dialect.separator_of(text, [name for names in self._wanted for name in names])
+        found = _cells(text, self.name, self._line - 1, self._separator)
+        self.columns = min(self._wanted, key=lambda names: len(set(names) ^ set(found)))
+        if found == list(self.columns):
+            return
+        where = f"{self.name}, line {self._line - 1}"
+        if "=" in text or text.startswith("["):
+            raise UserError(f"{self.name}: this is TOML, but a log or a motion (CSV) is needed here.")
+        if any(_is_heading(comment, self._wanted) for comment in self.comments):
+            raise UserError(f"{where}: the column names above stand behind a #; take it away.")
+        if _is_heading(text, self._wanted):
+            raise UserError(f"{where}: the columns are separated by blanks; save it with commas between them.")
+        raise UserError(f"{where}: {_column_problem(found, self.columns)}.")
+
+    def _with_commas(self, lines: bytes) -> bytes:
+        """The lines with commas as separators. Where these are others, all decimal marks must be alike."""
+        if self._separator == ",":
+            return lines
+        self._marks += b"".join(mark for mark in (b",", b".") if mark in lines and mark not in self._marks)
+        if len(self._marks) > 1:
+            raise UserError(
+                f"{self.name}: its numbers have commas and points, so nobody knows which is the decimal mark; save it "
+                "with decimal points alone."
+            )
+        return csv_dialect.to_commas(lines, self._separator)
 
     def _refuse_long(self, line: bytes, number: int) -> None:
         if len(line) >= BLOCK:
@@ -193,6 +236,12 @@ def number(text: str) -> float:
     return float(text)
 
 
+def _is_heading(text: str, wanted: Sequence[Sequence[str]]) -> bool:
+    """Whether a line has the names of columns, however they are separated."""
+    words = text.replace(",", " ").replace(";", " ").replace('"', " ").split()
+    return any(words == list(names) for names in wanted)
+
+
 def read(path: str | Path, columns: Sequence[str], minimum_rows: int = 1) -> CsvTable:
     """Read all of `path`, whose column names must be exactly `columns`, in that order."""
     with CsvFile(path, columns) as file:
@@ -212,13 +261,20 @@ def _text(block: Block, name: str) -> str:
         ) from None
 
 
-def _cells(line: str, name: str, number: int) -> list[str]:
+def _cells(line: str, name: str, number: int, separator: str = ",", least: int = 0) -> list[str]:
     try:
-        return next(csv.reader([line], strict=True))
+        return csv_dialect.cells_of(line, separator, least)
     except csv.Error as error:
         raise UserError(f"{name}, line {number}: not valid CSV: {error}.") from None
-    except StopIteration:
-        return []
+
+
+def _row_problem(cells: Sequence[str], columns: Sequence[str]) -> str:
+    problem = f"{counted(len(cells), 'value')} where {len(columns)} columns are named"
+    if len(cells) > len(columns):
+        return f"{problem}; if its decimal marks are commas, save it with decimal points"
+    if len(cells) == 1 and cells[0][:1].isalpha():
+        return f"{problem}: {cut(repr(cells[0]))}; a comment begins with #"
+    return problem
 
 
 def _column_problem(found: Sequence[str], wanted: Sequence[str]) -> str:
