@@ -95,7 +95,7 @@ def test_no_damage_to_rows_goes_unsaid(path: Path, short_log: bytes, damage: Cal
 
 @pytest.mark.parametrize(
     "line",
-    ["firmware: 9.9.9", "board: nano328", "parameter_crc: 0x1234", "period_ms: 4", "every_ticks: 1",
+    ["firmware: 9.9.9", "board: nano328", "parameter_crc: 0x1234", "period_ms: 4", "every_ticks: 6",
      "dropped_samples: 3", "recording: interrupted", "ended_by: a fault"],
 )  # fmt: skip
 def test_a_fact_that_was_changed_is_told(tmp_path: Path, line: str) -> None:

@@ -16,6 +16,8 @@ from greywhale.base.types import Floats
 from greywhale.files.log.check import add_rows, facts_of
 from greywhale.files.log.condition import judge_condition
 from greywhale.files.log.layout import COLUMNS as LOG_COLUMNS
+from greywhale.files.log.reader import refuse_other_times
+from greywhale.files.log.units import doubt_speed, perhaps_degrees
 from greywhale.files.trajectory import POT_RANGE_RAD, Trajectory
 from greywhale.protocol.firmware import JOINTS
 
@@ -40,8 +42,11 @@ def load_leader(path: str | Path) -> Trajectory:
             crc = add_rows(crc, block.data)
         time_s, angles = np.concatenate(each_time), np.concatenate(each_angle)
         file.require_rows(len(time_s), 2)
-        is_log = file.columns is LOG_COLUMNS
-        told = judge_condition(file.name, facts_of(file.comments), crc, time_s).remarks if is_log else ()
+        facts = facts_of(file.comments) if file.columns is LOG_COLUMNS else {}
+        refuse_other_times(file.name, facts, time_s)
+        told = () if "every_ticks" in facts else doubt_speed(time_s, angles)
+        if file.columns is LOG_COLUMNS:
+            told += judge_condition(file.name, facts, crc, time_s).remarks
     wrong = _find_wrong(time_s, angles)
     if wrong is not None:
         row, column, problem = wrong
@@ -54,7 +59,8 @@ def _find_wrong(time_s: Floats, angles: Floats) -> tuple[int, str, str] | None:
     speeds that mostly are wrong units.
     """
     for row, joint in np.argwhere(np.abs(angles) > POT_RANGE_RAD)[:1].tolist():
-        allowed = f"[-{POT_RANGE_RAD}, {POT_RANGE_RAD}] rad; shift or scale this joint"
+        perhaps = perhaps_degrees(float(np.abs(angles).max())) or "; shift or scale this joint"
+        allowed = f"[-{POT_RANGE_RAD}, {POT_RANGE_RAD}] rad{perhaps}"
         problem = f"{angles[row, joint]:g} rad is out of the potentiometers' range {allowed}"
         return row, COLUMNS[1 + joint], problem
     for row in np.flatnonzero(time_s - time_s[0] > LONGEST_S)[:1].tolist():
@@ -62,7 +68,7 @@ def _find_wrong(time_s: Floats, angles: Floats) -> tuple[int, str, str] | None:
     speed = np.abs(np.diff(angles, axis=0)) / np.diff(time_s)[:, None]
     for row, joint in np.argwhere(speed > FASTEST_RAD_S)[:1].tolist():
         move = f"{angles[row, joint]:g} to {angles[row + 1, joint]:g} rad in {time_s[row + 1] - time_s[row]:g} s"
-        problem = f"from {move} is faster than {FASTEST_RAD_S:g} rad/s; give a jump more time"
+        problem = f"from {move} is faster than {FASTEST_RAD_S:g} rad/s; give a jump more time, and times in s"
         return row + 1, COLUMNS[1 + joint], problem
     return None
 

@@ -17,6 +17,7 @@ from greywhale.protocol.firmware import JOINTS
 from greywhale.protocol.table import ParameterTable
 
 SHORTEST_S = 4.0
+FARTHEST_S = 0.1
 # A reading that stays exactly at its extreme value for this share of the log, that far out (rad), is clipped.
 CLIPPED_SHARE = 0.01
 CLIPPED_FROM = 2.3
@@ -34,6 +35,11 @@ def check(prepared: Prepared, arm: ArmParameters, table: ParameterTable | None) 
     if off:
         raise UserError(f"{log.name}: {off}.")
     used = rows_in(prepared.runs, len(log.time))
+    if prepared.period > FARTHEST_S:
+        raise UserError(
+            f"{log.name}: its rows are {prepared.period:.3g} s apart, but at most {FARTHEST_S:g} s show how an arm "
+            "moves; is time_s in ms? Record more samples a second, or give times in s."
+        )
     seconds = sum(run.period * (run.stop - run.start - 1) for run in prepared.runs)
     if seconds < SHORTEST_S:
         raise UserError(

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from greywhale.base.errors import counted
 from greywhale.files.log.check import Check, compare, rows_stated
+from greywhale.files.log.units import doubt_spacing
 
 # Fewer missing samples in a row are no gap: a link may lose some.
 _MOST_MISSING = 10
@@ -52,7 +53,8 @@ def judge_condition(name: str, facts: Mapping[str, str], crc: int, time_s: NDArr
         ),
         Check.CHANGED: ("its check fails: rows or header are not as they were recorded.",),
     }[check]
-    return Condition(check, gaps, remarks + ((_told(gaps),) if gaps else ()))
+    odd = () if "every_ticks" in facts else doubt_spacing(time_s)
+    return Condition(check, gaps, remarks + odd + ((_told(gaps),) if gaps else ()))
 
 
 def gaps_in(time_s: NDArray[np.float64]) -> tuple[Gap, ...]:

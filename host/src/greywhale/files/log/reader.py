@@ -17,6 +17,7 @@ from greywhale.files.log.check import Check, add_rows, facts_of
 from greywhale.files.log.condition import Condition, judge_condition
 from greywhale.files.log.layout import COLUMNS, COMPLETE, ENDINGS, STATES, TITLE, UNFINISHED, Origin
 from greywhale.files.log.parameters import table_in
+from greywhale.files.log.units import perhaps_degrees, refuse_other_spacing
 from greywhale.protocol.firmware import JOINTS
 from greywhale.protocol.joints import ALL, Joints, parse
 from greywhale.protocol.table import ParameterTable
@@ -78,13 +79,14 @@ def read_log(path: str | Path) -> Log:
                 f"{path}: recording is {cut(repr(ending))} in the header; it must be one of {', '.join(ENDINGS)}."
             )
         origin = _origin(facts, str(path))
-        dropped = _whole(facts, "dropped_samples", str(path), 0, _MOST_WHOLE) or 0
+        dropped = _dropped(facts, str(path))
         columns, crc = _Columns(_count_lines(path)), 0
         for block in file.blocks(torn=ending == UNFINISHED):
             columns.take(file, block)
             crc = add_rows(crc, block.data)
         file.require_rows(columns.rows, 2)
     _refuse_other_period(str(path), origin, columns)
+    refuse_other_times(str(path), facts, columns.time[: columns.rows])
     return Log(
         name=str(path),
         origin=origin,
@@ -163,6 +165,11 @@ def parse_rows(data: bytes) -> tuple[NDArray[np.float64], NDArray[np.int8]] | No
     return None if (states < 0).any() else (rows["numbers"], states)
 
 
+def refuse_other_times(name: str, facts: dict[str, str], time_s: NDArray[np.float64]) -> None:
+    """Refuse rows that are further apart than the header's facts say, or closer."""
+    refuse_other_spacing(name, _every_ticks(facts, name), _dropped(facts, name), time_s)
+
+
 def _refuse_other_period(name: str, origin: Origin, columns: _Columns) -> None:
     """Refuse a control period that the rows contradict: between its ends no voltage changes."""
     if origin.period_ms is None or columns.changes < _ENOUGH:
@@ -229,7 +236,9 @@ def _joints(table: csv_file.CsvTable, quantity: str) -> NDArray[np.float64]:
         beyond = np.flatnonzero(np.abs(values) > most)
         if beyond.size:
             row = int(beyond[0])
-            raise table.error(row, column, f"{values[row]:g} {unit} is beyond {most:g} {unit}; logs are in {unit}")
+            perhaps = perhaps_degrees(float(np.abs(values).max())) if unit == "rad" else "; these seem to be in mV"
+            problem = f"{values[row]:g} {unit} is beyond {most:g} {unit}; logs are in {unit}{perhaps}"
+            raise table.error(row, column, problem)
         columns.append(values)
     return np.column_stack(columns)
 
@@ -242,7 +251,7 @@ def _origin(facts: dict[str, str], name: str) -> Origin:
         board=board,
         param_crc=crc,
         period_ms=_whole(facts, "period_ms", name, 1, 50),
-        every_ticks=_whole(facts, "every_ticks", name, 1, 0xFFFF),
+        every_ticks=_every_ticks(facts, name),
         table=table,
         joints=_joints_in_use(facts, name, table),
     )
@@ -253,6 +262,14 @@ def _joints_in_use(facts: dict[str, str], name: str, table: ParameterTable | Non
     if "joints_in_use" in facts:
         return parse(facts["joints_in_use"], f"{name}: joints_in_use")
     return ALL if table is None else table.joints_in_use
+
+
+def _every_ticks(facts: dict[str, str], name: str) -> int | None:
+    return _whole(facts, "every_ticks", name, 1, 0xFFFF)
+
+
+def _dropped(facts: dict[str, str], name: str) -> int:
+    return _whole(facts, "dropped_samples", name, 0, _MOST_WHOLE) or 0
 
 
 def _whole(facts: dict[str, str], key: str, name: str, least: int, most: int) -> int | None:
