@@ -22,10 +22,12 @@ from greywhale.files.trajectory import Trajectory
 from greywhale.protocol import schema
 from greywhale.protocol.ports import find_ports
 from greywhale.protocol.schema import State
+from greywhale.protocol.table import ParameterTable
 from greywhale_sim.serve import ServeOptions, running
 from tests.board.fake_board import FakeBoard, Faults
 from tests.board.port_board import PortBoard, locked
 from tests.cli.example_log import write_log
+from tests.files.older_parameters import write_older
 from tools import ROOT
 
 TABLE_10 = str(ROOT / "shared" / "fuzzy_tables" / "table_10.toml")
@@ -236,6 +238,88 @@ def test_params_set_get_backup_diff_restore(tmp_path: Path, capsys: Captured) ->
         assert ask(capsys, "params", "restore", backup, *at)[0] == 0
         assert board.stored == list(schema.DEFAULTS)
         assert ask(capsys, "params", "diff", backup, *at)[1]["differences"] == {}
+
+
+# What a board has that an older file does not state, and a restore would reset.
+NEWER = {"driver": 2, "estop_input": 2, "joint2.ratio": 32}
+
+
+@pytest.fixture
+def older(tmp_path: Path) -> str:
+    """A backup of the first layout, with another supply."""
+    path = tmp_path / "older.toml"
+    write_older(path, ParameterTable.defaults().with_raw({"supply_mv": 12000}), 1)
+    return str(path)
+
+
+def board_with(values: dict[str, int]) -> FakeBoard:
+    board = FakeBoard()
+    for name, raw in values.items():
+        index = schema.PARAMETER_BY_NAME[name].index
+        board.running[index] = board.stored[index] = board.staged[index] = raw
+    return board
+
+
+@pytest.mark.parametrize("missing", ["kept", "board", "defaults"])
+def test_restoring_an_older_file_resets_nothing_without_a_word(older: str, missing: str, capsys: Captured) -> None:
+    with board_with(NEWER) as board:
+        choice = [] if missing == "kept" else ["--missing", missing]
+        code, answer = ask(capsys, "params", "restore", older, *choice, "--port", board.port)
+        raw = {one.name: value for one, value in zip(schema.PARAMETERS, board.stored, strict=True)}
+    assert code == 0
+    assert raw["supply_mv"] == 12000
+    assert set(NEWER) <= set(answer["not_in_file"])
+    if missing == "defaults":
+        assert [raw[name] for name in NEWER] == [schema.PARAMETER_BY_NAME[name].default for name in NEWER]
+        assert answer["kept"] == []
+        assert set(answer["changed"]) == {"supply_mv", *NEWER}
+    else:
+        assert {name: raw[name] for name in NEWER} == NEWER
+        assert answer["changed"] == ["supply_mv"]
+        assert set(answer["kept"]) == set(NEWER)
+
+
+def test_what_a_restore_keeps_is_named_and_an_older_file_without_difference_says_nothing(
+    older: str, capsys: Captured
+) -> None:
+    with board_with(NEWER) as board:
+        assert entry.run(["params", "restore", older, "--port", board.port]) == 0
+        said = capsys.readouterr().out
+        assert (
+            "does not state these; they keep the board's values: estop_input = 2, driver = 2, joint2.ratio = 0.5."
+            in said
+        )
+    with board_with({}) as board:
+        assert entry.run(["params", "restore", older, "--port", board.port]) == 0
+        assert capsys.readouterr().out == f"{board.port}: changed and stored supply_mv.\n"
+
+
+@pytest.mark.parametrize(("answer", "code"), [(True, 0), (False, 1)])
+def test_a_terminal_is_asked_what_becomes_of_what_an_older_file_does_not_state(
+    older: str, monkeypatch: pytest.MonkeyPatch, capsys: Captured, answer: bool, code: int
+) -> None:
+    monkeypatch.setattr("greywhale.cli.params.sys.stdin.isatty", lambda: True)
+    monkeypatch.setattr("greywhale.cli.params.Terminal.agrees", lambda terminal, question: answer)
+    with board_with(NEWER) as board:
+        assert entry.run(["params", "restore", older, "--port", board.port]) == code
+        said = capsys.readouterr().err
+        assert f"{older} is older and does not state estop_input = 2, driver = 2, joint2.ratio = 0.5." in said
+        assert ("nothing was restored; --missing defaults" in said) is not answer
+        assert (board.asked(schema.ParamSaveRequest) > 0) is answer
+
+
+def test_a_difference_is_never_from_what_the_file_does_not_state(older: str, capsys: Captured) -> None:
+    with board_with(NEWER) as board:
+        answer = ask(capsys, "params", "diff", older, "--port", board.port)[1]
+        assert answer["differences"]["driver"] == {"board": 2, "file": None}
+        assert set(answer["differences"]) == {"supply_mv", *NEWER}
+        assert entry.run(["params", "diff", older, "--port", board.port]) == 0
+        said = capsys.readouterr().out.splitlines()
+    assert "driver           board 2, not in the file" in said
+    assert (
+        f"{older} is older and does not state {len(answer['not_in_file'])} parameters; the others are compared."
+        == said[-1]
+    )
 
 
 @pytest.mark.parametrize("verb", ["record", "record --enable", "replay"])

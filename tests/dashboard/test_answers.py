@@ -21,6 +21,7 @@ from greywhale.protocol import schema
 from greywhale.protocol.joints import parse
 from greywhale.protocol.table import ParameterTable
 from tests.dashboard.shared import jobs_of
+from tests.files.older_parameters import write_older
 
 
 @pytest.fixture
@@ -70,6 +71,10 @@ def test_a_controller_is_told_as_a_board_stores_it(answers: Answers) -> None:
     assert told["source"] == "a <b>test</b>"
     assert table.with_raw(told["raw"]) == table
     assert answers.controller("board.toml")["raw"] == table.by_name()
+    write_older(answers.folder.path / "older.toml", table, 1)
+    assert set(table.by_name()) - set(answers.controller("older.toml")["raw"]) > {"driver", "joint0.ce_ticks"}
+    write_older(answers.folder.path / "older.toml", table, 1)
+    assert "driver" not in answers.controller("older.toml")["raw"]
     assert answers.controller("table_8")["raw"] == controller.load("table_8").raw_values()
     with pytest.raises(UserError, match=r"arm.toml: this is an arm file, but a controller file is needed"):
         answers.controller("arm.toml")

@@ -12,6 +12,7 @@ from greywhale.base.errors import UserError
 from greywhale.files import parameter_file
 from greywhale.protocol import schema
 from greywhale.protocol.table import ParameterTable, physical
+from tests.files.older_parameters import write_older
 
 
 @st.composite
@@ -49,16 +50,24 @@ NEWER = {"unrest_amplitude": 0, "joint2.ce_ticks": 9, "gravity_1": 5, "joint3.ra
 
 @pytest.mark.parametrize("layout", range(1, schema.LAYOUT))
 def test_a_backup_of_an_older_layout_gets_the_defaults_of_what_it_lacks(tmp_path: Path, layout: int) -> None:
-    newer = tuple(one.name.rpartition(".")[2] for one in schema.PARAMETERS if one.since > layout)
     path = tmp_path / "backup.toml"
     table = ParameterTable.defaults().with_raw({"joint1.kp": 50_000})
-    parameter_file.save(
-        path,
-        table.with_raw({name: raw for name, raw in NEWER.items() if schema.PARAMETER_BY_NAME[name].since > layout}),
-    )
-    lines = path.read_text().splitlines(keepends=True)
-    path.write_text("".join(line for line in lines if not line.startswith(newer)))
+    newer = {name: raw for name, raw in NEWER.items() if schema.PARAMETER_BY_NAME[name].since > layout}
+    write_older(path, table.with_raw(newer), layout)
     assert parameter_file.load(path) == table
+    stated = parameter_file.load_stated(path)
+    assert all(schema.PARAMETER_BY_NAME[name].since <= layout for name in stated)
+    assert stated == {name: raw for name, raw in table.by_name().items() if name in stated}
+    assert {*parameter_file.not_in(stated), *stated} == set(table.by_name())
+    assert parameter_file.not_in(stated)
+
+
+def test_a_backup_of_this_layout_states_everything(tmp_path: Path) -> None:
+    path = tmp_path / "backup.toml"
+    table = ParameterTable.defaults().with_raw(NEWER)
+    parameter_file.save(path, table)
+    assert parameter_file.load_stated(path) == table.by_name()
+    assert parameter_file.not_in(table.by_name()) == ()
 
 
 @pytest.mark.parametrize(

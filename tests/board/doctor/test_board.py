@@ -14,6 +14,7 @@ from greywhale.board.doctor.link import Traffic, examine_traffic
 from greywhale.files import parameter_file
 from greywhale.protocol import schema
 from greywhale.protocol.table import ParameterTable
+from tests.files.older_parameters import write_older
 
 MINE = str(__version__)
 HELLO = schema.HelloReply(
@@ -75,6 +76,19 @@ def test_the_set_of_a_file_is_good_and_every_difference_is_named(tmp_path: Path)
     assert changed.says.startswith(f"Not as in {path}: ")
     assert "joint1.motor_sign is -1, not 1" in changed.says
     assert "supply_mv is 12000, not 15000" in changed.says
+
+
+@pytest.mark.parametrize("layout", range(1, schema.LAYOUT))
+def test_what_an_older_file_does_not_state_is_no_difference(tmp_path: Path, layout: int) -> None:
+    path = tmp_path / "older.toml"
+    write_older(path, ParameterTable.defaults(), layout)
+    newer = next(one for one in schema.PARAMETERS if one.since > layout)
+    board = ParameterTable.defaults().with_raw({newer.name: newer.maximum})
+    same, _ = examine_table(board, path)
+    assert same.verdict is Verdict.GOOD
+    assert "It is older and says nothing of" in same.says
+    changed, _ = examine_table(board.with_raw({"supply_mv": 12000}), path)
+    assert newer.name not in changed.says
 
 
 def test_a_calibration_is_missed_until_every_potentiometer_has_one() -> None:

@@ -161,7 +161,11 @@ def answers_to_parameter_files() -> list[dict[str, Any]]:
         texts.append("".join(line for line in sound.splitlines(keepends=True) if not line.startswith(newer)))
     texts += [sound, *(sound.replace(slip, made, 1) for slip, made in PARAMETER_SLIPS), *OTHERS, "[[joint]]\nkp = 1"]
     assert len(set(texts)) == len(texts), "every slip is in the file"
-    return answers(texts, lambda path: parameter_file.load(path).raw)
+    return answers(texts, stated_by_index)
+
+
+def stated_by_index(path: Path) -> list[tuple[int, int]]:
+    return [(PARAMETER_BY_NAME[name].index, raw) for name, raw in parameter_file.load_stated(path).items()]
 
 
 def test_link_client_samples_law_files_bench_and_tuner_give_what_python_gives(

@@ -2,28 +2,35 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
+import sys
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TypedDict
 
 import click
 
-from greywhale.base.errors import BadUsage, cut
+from greywhale.base.errors import BadUsage, UserError, counted, cut
 from greywhale.base.formats.units import read_number, unit_of
 from greywhale.base.types import Crc
 from greywhale.board.device import Device
 from greywhale.board.upload import UploadFacts, change_parameters, read_parameters
 from greywhale.cli import completion
 from greywhale.cli.group import Group
-from greywhale.cli.output import FILE, OnPort, json_option, overwrite_option, port_option, progress, show
+from greywhale.cli.output import FILE, OnPort, json_option, option, overwrite_option, port_option, progress, show, tell
+from greywhale.cli.person import Terminal
 from greywhale.files import parameter_file
 from greywhale.files.names import did_you_mean
 from greywhale.files.outputs import require_new
 from greywhale.protocol import schema
 from greywhale.protocol.declared import Parameter
 from greywhale.protocol.ports import choose_port
-from greywhale.protocol.table import physical
+from greywhale.protocol.table import ParameterTable, physical
+
+DEFAULTS = "defaults"
+MISSING = ("board", DEFAULTS)  # what parameters become that a file does not state
+MOST_NAMED = 8  # parameters in a sentence
 
 
 class GetAnswer(OnPort):
@@ -40,17 +47,19 @@ class BackupAnswer(OnPort):
 
 
 class RestoreAnswer(OnPort, UploadFacts):
-    pass
+    not_in_file: list[str]  # parameters that the file, as an older one, does not state
+    kept: list[str]  # those of them that keep a value of the board other than the default
 
 
 class Difference(TypedDict):
     board: float
-    file: float
+    file: float | None  # null: an older file does not state it, and the board has another value than the default
 
 
 class DiffAnswer(OnPort):
     file: str
     differences: dict[str, Difference]  # name to both values, in the parameter's unit
+    not_in_file: list[str]  # parameters that the file, as an older one, does not state
 
 
 @click.group("params", cls=Group)
@@ -118,15 +127,41 @@ def backup(file: Path, port: str | None, overwrite: bool, as_json: bool) -> None
 
 @command.command("restore")
 @click.argument("file", type=FILE)
+@option(
+    "--missing",
+    type=click.Choice(MISSING),
+    help="What becomes of parameters that an older file does not state: they keep the board's values, or take the "
+    "defaults.",
+)
 @port_option
 @json_option(RestoreAnswer)
-def restore(file: Path, port: str | None, as_json: bool) -> None:
-    """Run and store the parameters of a backup."""
-    wanted = parameter_file.load(file)
-    with Device(choose_port(port)) as device, progress(brief=True) as report:
-        done = change_parameters(device, wanted.by_name(), report)
-    answer: RestoreAnswer = {"port": device.port, **done.as_dict()}
-    show(as_json, answer, _changed(device.port, done.changed))
+def restore(file: Path, missing: str | None, port: str | None, as_json: bool) -> None:
+    """Run and store the parameters of a backup.
+
+    A backup of an older greywhale does not state newer parameters. They keep the board's values; a terminal is asked
+    first where these are not the defaults.
+    """
+    wanted = parameter_file.load_stated(file)
+    silent = parameter_file.not_in(wanted)
+    with Device(choose_port(port)) as device:
+        with progress(brief=True) as report:
+            running = read_parameters(device, report)
+        kept = [] if missing == DEFAULTS else _not_default(running, silent)
+        if kept and missing is None and not as_json and sys.stdin.isatty() and not _agrees_to_keep(file, running, kept):
+            raise UserError(
+                f"{device.port}: nothing was restored; --missing defaults takes the defaults of what {file} lacks."
+            )
+        if missing == DEFAULTS:
+            wanted |= {name: schema.PARAMETER_BY_NAME[name].default for name in silent}
+        with progress(brief=True) as report:
+            done = change_parameters(device, wanted, report, running)
+    answer: RestoreAnswer = {"port": device.port, **done.as_dict(), "not_in_file": list(silent), "kept": kept}
+    lines = [_changed(device.port, done.changed)]
+    if kept:
+        lines.append(
+            f"{file} is older and does not state these; they keep the board's values: {_named(running, kept)}."
+        )
+    show(as_json, answer, "\n".join(lines))
 
 
 @command.command("diff")
@@ -135,20 +170,55 @@ def restore(file: Path, port: str | None, as_json: bool) -> None:
 @json_option(DiffAnswer)
 def diff(file: Path, port: str | None, as_json: bool) -> None:
     """Show where a board differs from a backup."""
-    wanted = parameter_file.load(file)
+    wanted = parameter_file.load_stated(file)
+    silent = parameter_file.not_in(wanted)
     with Device(choose_port(port)) as device, progress(brief=True) as report:
         running = read_parameters(device, report)
+    differ = {name for name, raw in wanted.items() if running[name] != raw} | set(_not_default(running, silent))
     differences: dict[str, Difference] = {
-        parameter.name: {
-            "board": physical(parameter, running[parameter.name]),
-            "file": physical(parameter, wanted[parameter.name]),
+        one.name: {
+            "board": physical(one, running[one.name]),
+            "file": physical(one, wanted[one.name]) if one.name in wanted else None,
         }
-        for parameter in schema.PARAMETERS
-        if running[parameter.name] != wanted[parameter.name]
+        for one in schema.PARAMETERS
+        if one.name in differ
     }
-    lines = [f"{name:<16} board {both['board']:g}, file {both['file']:g}" for name, both in differences.items()]
-    answer: DiffAnswer = {"port": device.port, "file": str(file), "differences": differences}
-    show(as_json, answer, "\n".join(lines) or f"{device.port} and {file} hold the same parameters.")
+    lines = [_difference(name, both) for name, both in differences.items()]
+    if not lines:
+        lines.append(f"{device.port} and {file} hold the same parameters.")
+    if silent:
+        lines.append(
+            f"{file} is older and does not state {counted(len(silent), 'parameter')}; the others are compared."
+        )
+    answer: DiffAnswer = {
+        "port": device.port,
+        "file": str(file),
+        "differences": differences,
+        "not_in_file": list(silent),
+    }
+    show(as_json, answer, "\n".join(lines))
+
+
+def _difference(name: str, both: Difference) -> str:
+    file = "not in the file" if both["file"] is None else f"file {both['file']:g}"
+    return f"{name:<16} board {both['board']:g}, {file}"
+
+
+def _not_default(table: ParameterTable, names: Sequence[str]) -> list[str]:
+    return [name for name in names if table[name] != schema.PARAMETER_BY_NAME[name].default]
+
+
+def _agrees_to_keep(file: Path, table: ParameterTable, names: Sequence[str]) -> bool:
+    tell(f"{file} is older and does not state {_named(table, names)}.")
+    with contextlib.closing(Terminal()) as person:
+        return person.agrees("Keep these values of the board?")
+
+
+def _named(table: ParameterTable, names: Sequence[str]) -> str:
+    """The first few parameters with their values."""
+    each = [f"{name} = {physical(schema.PARAMETER_BY_NAME[name], table[name]):g}" for name in names]
+    more = f" and {len(each) - MOST_NAMED} more" if len(each) > MOST_NAMED else ""
+    return f"{', '.join(each[:MOST_NAMED])}{more}"
 
 
 def _beginning_with(name: str) -> list[Parameter]:

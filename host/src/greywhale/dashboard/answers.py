@@ -114,7 +114,7 @@ class Answers:
         """The numbers of a controller.toml, or of a parameter file."""
         path = controller_path(file) if file in controller_names() else self.folder.file(file)
         if kind_of(toml_file.read(path)) is Kind.PARAMETERS:
-            return {"file": file, "source": "", "raw": parameter_file.load(path).by_name()}
+            return {"file": file, "source": "", "raw": parameter_file.load_stated(path)}
         loaded = controller.load(path)
         return {"file": file, "source": loaded.source, "raw": loaded.raw_values()}
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from pathlib import Path
 
 from greywhale.base.errors import UserError, cut
@@ -32,8 +33,13 @@ def load(path: str | Path) -> ParameterTable:
     """A whole table; every parameter must be there, in range, and nothing else.
 
     A file of an older layout gets the defaults of the parameters that this layout lacks, as a board does with its
-    banks.
+    banks. Whoever changes a board takes `load_stated`.
     """
+    return _table(load_stated(path), path)
+
+
+def load_stated(path: str | Path) -> dict[str, int]:
+    """The raw values that a file states, by name: all of its own layout, which may be older than this one."""
     data = toml_file.read(path)
     refuse_other_kind(data, str(path), Kind.PARAMETERS)
     found = _flat(data, path)
@@ -42,25 +48,34 @@ def load(path: str | Path) -> ParameterTable:
         advice = toml_file.advice(unknown[0], schema.PARAMETER_BY_NAME)
         key = toml_file.key_path(unknown[:1])
         raise UserError(f"{path}: unknown key {key}; {advice}.")
-    values = []
     layout = max((schema.PARAMETER_BY_NAME[name].since for name in found), default=1)
-    for parameter in schema.PARAMETERS:
-        if parameter.since > layout:
-            values.append(parameter.default)
-            continue
-        if parameter.name not in found:
-            raise UserError(f"{path}: {parameter.name} is missing; a parameter file holds all of them.")
-        value = found[parameter.name]
-        if isinstance(value, bool) or not isinstance(value, int | float):
-            raise UserError(
-                f"{path}: {parameter.name} is {cut(json.dumps(value, default=str))}, but it must be a number."
-            )
-        try:
-            values.append(parameter.to_raw_as_given(value))
-        except UserError as error:
-            raise UserError(f"{path}: {error.message}") from None
+    stated = {
+        parameter.name: _raw(parameter, found, path) for parameter in schema.PARAMETERS if parameter.since <= layout
+    }
+    _table(stated, path)  # what contradicts itself is refused here
+    return stated
+
+
+def not_in(stated: Mapping[str, int]) -> tuple[str, ...]:
+    """The parameters that a file of an older layout does not state."""
+    return tuple(one.name for one in schema.PARAMETERS if one.name not in stated)
+
+
+def _raw(parameter: Parameter, found: Mapping[str, object], path: str | Path) -> int:
+    if parameter.name not in found:
+        raise UserError(f"{path}: {parameter.name} is missing; a parameter file holds all of them.")
+    value = found[parameter.name]
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        raise UserError(f"{path}: {parameter.name} is {cut(json.dumps(value, default=str))}, but it must be a number.")
     try:
-        return ParameterTable(tuple(values), name=str(path))
+        return parameter.to_raw_as_given(value)
+    except UserError as error:
+        raise UserError(f"{path}: {error.message}") from None
+
+
+def _table(stated: Mapping[str, int], path: str | Path) -> ParameterTable:
+    try:
+        return ParameterTable.defaults().with_raw(stated).with_name(str(path))
     except UserError as error:
         raise UserError(f"{path}: {error.message}") from None
 

@@ -24,8 +24,8 @@ export function parameterFile(raw: readonly number[]): string {
 
 const NAMES = TABLE.parameters.map(({ name }) => name);
 
-/** Raw values of the whole table; a file of an older layout gets the defaults of what it lacks. An error is the host's sentence. */
-export function parametersIn(given: NamedText): number[] {
+/** The raw values that a file states, by index: all of its own layout, which may be older. An error is the host's sentence. */
+export function statedIn(given: NamedText): Map<number, number> {
   const { name: file } = given;
   const data = readToml(given);
   refuseOtherKind(data, file, "parameters");
@@ -34,16 +34,15 @@ export function parametersIn(given: NamedText): number[] {
     const unknown = [...found.keys()].find((name) => !NAMES.includes(name));
     if (unknown !== undefined) throw new LinkError(`unknown key ${keyPath([unknown])}; ${advice(unknown, NAMES)}.`);
     const layout = TABLE.parameters.reduce((newest, { name, since }) => found.has(name) ? Math.max(newest, since) : newest, 1);
-    const raw = TABLE.parameters.map((parameter) => {
+    const stated = new Map(TABLE.parameters.filter(({ since }) => since <= layout).map((parameter): [number, number] => {
       const { name } = parameter;
-      if (parameter.since > layout) return parameter.initial;
       const value = found.get(name);
       if (value === undefined) throw new LinkError(`${name} is missing; a parameter file holds all of them.`);
       if (typeof value !== "number" && typeof value !== "bigint") throw new LinkError(`${name} is ${quoted(value)}, but it must be a number.`);
-      return rawAsGiven(parameter, Number(value));
-    });
-    requireOrder(raw);
-    return raw;
+      return [parameter.index, rawAsGiven(parameter, Number(value))];
+    }));
+    requireOrder(TABLE.parameters.map(({ index, initial }) => stated.get(index) ?? initial));
+    return stated;
   });
 }
 

@@ -1,7 +1,7 @@
 // All parameters of the board: read, change, store; a controller.toml onto the board, the whole set into a file.
 
 import { controllerIn } from "../files/controller_file";
-import { parameterFile, parametersIn } from "../files/parameter_file";
+import { parameterFile, statedIn } from "../files/parameter_file";
 import { rawAsGiven } from "../files/raw_value";
 import type { Parameter } from "../link/declared";
 import { TABLE } from "../link/schema";
@@ -105,12 +105,13 @@ export class ParametersView implements View {
 
   /** Shows where a parameter file differs from what runs. */
   private async restore(file: NamedText): Promise<void> {
-    const raw = parametersIn(file);
+    const stated = statedIn(file);
     await this.session.readParameters();
-    this.edit(new Map(raw.entries()));
-    const count = this.changed().length;
-    setText(this.said, !count ? `${file.name} is what runs.`
-      : `${file.name} changes ${count === 1 ? "one parameter" : `${count} parameters`}: Apply runs it, Store then keeps it.`);
+    this.edit(stated);
+    const [count, kept] = [this.changed().length, TABLE.parameters.length - stated.size];
+    const older = kept ? ` It is older and does not state ${kept === 1 ? "one parameter, which keeps its value" : `${kept} parameters, which keep their values`}.` : "";
+    setText(this.said, (!count ? `${file.name} is what runs.`
+      : `${file.name} changes ${count === 1 ? "one parameter" : `${count} parameters`}: Apply runs it, Store then keeps it.`) + older);
   }
 
   private async keep(): Promise<void> {

@@ -10,7 +10,7 @@ from greywhale.base.errors import counted
 from greywhale.board.doctor.finding import Finding, Verdict
 from greywhale.board.pots import POTS, pots_there
 from greywhale.board.refusal import fault_text, upper_first
-from greywhale.files.parameter_file import load
+from greywhale.files.parameter_file import load_stated, not_in
 from greywhale.protocol import schema
 from greywhale.protocol.joints import ALL, named, unused
 from greywhale.protocol.table import ParameterTable, physical
@@ -112,7 +112,7 @@ def examine_supply(table: ParameterTable, measured_v: float | None) -> Finding:
 
 def examine_table(table: ParameterTable, path: Path | None) -> list[Finding]:
     """The running set against its file, and whether potentiometers were ever calibrated."""
-    findings = [] if path is None else [_against(table, load(path), path)]
+    findings = [] if path is None else [_against(table, load_stated(path), path)]
     return [*findings, *_joints(table), _calibration(table)]
 
 
@@ -128,10 +128,12 @@ def _joints(table: ParameterTable) -> list[Finding]:
     return [Finding("joints", Verdict.GOOD, told)]
 
 
-def _against(table: ParameterTable, wanted: ParameterTable, path: Path) -> Finding:
-    names = [name for name, raw in wanted.by_name().items() if table[name] != raw]
+def _against(table: ParameterTable, wanted: Mapping[str, int], path: Path) -> Finding:
+    names = [name for name, raw in wanted.items() if table[name] != raw]
+    silent = not_in(wanted)
     if not names:
-        return Finding("parameters", Verdict.GOOD, f"The board runs what {path} says (CRC {table.crc:#06x}).")
+        of_all = f" It is older and says nothing of {counted(len(silent), 'parameter')}." if silent else ""
+        return Finding("parameters", Verdict.GOOD, f"The board runs what {path} says (CRC {table.crc:#06x}).{of_all}")
     shown = ", ".join(_difference(name, table, wanted) for name in names[:_SHOWN])
     more = f" and {len(names) - _SHOWN} more" if len(names) > _SHOWN else ""
     return Finding(
@@ -142,7 +144,7 @@ def _against(table: ParameterTable, wanted: ParameterTable, path: Path) -> Findi
     )
 
 
-def _difference(name: str, table: ParameterTable, wanted: ParameterTable) -> str:
+def _difference(name: str, table: ParameterTable, wanted: Mapping[str, int]) -> str:
     parameter = schema.PARAMETER_BY_NAME[name]
     return f"{name} is {physical(parameter, table[name]):g}, not {physical(parameter, wanted[name]):g}"
 
