@@ -9,6 +9,9 @@ import { cut, keyPath } from "./words";
 
 const LONGEST = 1 << 22;
 const LARGEST = 1n << 63n;
+// How the first line of a log or a motion begins, and one of a TOML file: a key, or a table's name.
+const BEGINS_CSV = /^"?time_s"?[,;\t]/;
+const BEGINS_TOML = /^[ \t]*(("[^"]*"|'[^']*'|[A-Za-z0-9_-]+)[ \t]*[.=]|\[\[?[ \t]*["'A-Za-z0-9_-])/;
 
 /** The content of a file: integers as bigint. */
 export function readToml({ name, text: whole, spoiltAt }: NamedText): TomlTable {
@@ -24,10 +27,13 @@ export function readToml({ name, text: whole, spoiltAt }: NamedText): TomlTable 
     data = parse(whole, { integersAsBigInt: true }) as TomlTable; // it passes over one such mark itself
   } catch (error) {
     if (!(error instanceof TomlError)) throw error;
-    const first = text.split("\n").find((line) => line.trim() && !line.startsWith("#")) ?? "";
-    const why = first.startsWith("time_s,") ? "this is a log or a motion (CSV)"
+    const lines = text.split("\n");
+    const place = lines.findIndex((line) => line.trim() && !line.startsWith("#"));
+    const first = lines[place] ?? "";
+    const why = BEGINS_CSV.test(first) ? "this is a log or a motion (CSV)"
+      : first && !BEGINS_TOML.test(first) ? `line ${place + 1} is neither KEY = VALUE nor a [TABLE]; is this a file of greywhale?`
       : `${cut(error.message.split("\n")[0]!.replace("Invalid TOML document: ", ""), 200)} (at line ${error.line}, column ${error.column})`;
-    throw new LinkError(`${name}: not valid TOML: ${why}.`);
+    throw new LinkError(`${name}: not valid TOML: ${why}${why.endsWith("?") ? "" : "."}`);
   }
   if (mark) throw new LinkError(`${name}: not valid TOML: ${mark.words} (at line ${mark.line}).`);
   if (!Object.keys(data).length) {

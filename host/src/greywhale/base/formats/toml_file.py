@@ -30,6 +30,9 @@ _LONGEST = 1 << 22
 _DEEPEST = 24
 _LARGEST = 1 << 63
 _BARE = re.compile(r"[A-Za-z0-9_-]+")
+# How the first line of a log or a motion begins, and one of a TOML file: a key, or a table's name.
+_CSV = re.compile(r'"?time_s"?[,;\t]')
+_TOML = re.compile(r"""[ \t]*(("[^"]*"|'[^']*'|[A-Za-z0-9_-]+)[ \t]*[.=]|\[\[?[ \t]*["'A-Za-z0-9_-])""")
 # Strings and comments as a whole, so that nothing in them counts, and all else one by one. Spaces may stand between the
 # parts of a key.
 _TOKEN = re.compile(
@@ -106,7 +109,10 @@ def _parse(text: str, name: str) -> dict[str, Any]:
     except tomllib.TOMLDecodeError as error:
         if _is_csv(text):
             raise UserError(f"{name}: not valid TOML: this is a log or a motion (CSV).") from None
-        raise UserError(f"{name}: not valid TOML: {_lower_first(cut(str(error), 200))}.") from None
+        why = f"{_lower_first(cut(str(error), 200))}."
+        if (line := _no_toml_line(text)) is not None:
+            why = f"line {line} is neither KEY = VALUE nor a [TABLE]; is this a file of greywhale?"
+        raise UserError(f"{name}: not valid TOML: {why}") from None
     except RecursionError:
         raise UserError(f"{name}: not valid TOML: it is nested too deeply.") from None
     except ValueError:  # Python reads no integer of thousands of digits
@@ -119,8 +125,19 @@ def _parse(text: str, name: str) -> dict[str, Any]:
 
 
 def _is_csv(text: str) -> bool:
-    first = next((line for line in text.splitlines() if line.strip() and not line.startswith("#")), "")
-    return first.startswith("time_s,")
+    return _CSV.match(_first_line(text)[1]) is not None
+
+
+def _no_toml_line(text: str) -> int | None:
+    """The number of the first line that says something, if no TOML file begins so; else None."""
+    number, line = _first_line(text)
+    return None if not line or _TOML.match(line) else number
+
+
+def _first_line(text: str) -> tuple[int, str]:
+    """The first line that is neither empty nor a comment, and its number."""
+    lines = enumerate(text.split("\n"), 1)
+    return next(((number, line) for number, line in lines if line.strip() and not line.startswith("#")), (0, ""))
 
 
 def _refuse_depth(text: str, name: str) -> None:
