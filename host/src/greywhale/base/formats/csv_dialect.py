@@ -6,7 +6,7 @@ import csv
 import re
 from collections.abc import Iterator, Sequence
 
-SEPARATORS = (",", ";", "\t")
+SEPARATORS = (",", ";", "\t", "|")
 # A line such as `sep=;` with which some spreadsheets begin a file.
 _SEPARATOR_LINE = re.compile(r"\s*\"?sep=.\"?\s*", re.IGNORECASE)
 _COMMENT = re.compile(rb'(?mi)^[ \t]*"?(#|sep=)[^\n]*\n')

@@ -195,7 +195,7 @@ class CsvFile:
             raise UserError(f"{self.name}: this is TOML, but a log or a motion (CSV) is needed here.")
         if any(_is_heading(comment, self._wanted) for comment in self.comments):
             raise UserError(f"{where}: the column names above stand behind a #; take it away.")
-        if _is_heading(text, self._wanted):
+        if text.split() in [list(names) for names in self._wanted]:
             raise UserError(f"{where}: the columns are separated by blanks; save it with commas between them.")
         raise UserError(f"{where}: {_column_problem(found, self.columns)}.")
 
@@ -257,7 +257,7 @@ def _text(block: Block, name: str) -> str:
         return block.data.decode("utf-8")
     except UnicodeDecodeError as error:
         raise UserError(
-            f"{name}: byte {block.offset + error.start} is not UTF-8; a CSV file must be plain text."
+            f"{name}: byte {block.offset + error.start} is not UTF-8; save it as CSV in UTF-8, which is plain text."
         ) from None
 
 
@@ -280,8 +280,13 @@ def _row_problem(cells: Sequence[str], columns: Sequence[str]) -> str:
 def _column_problem(found: Sequence[str], wanted: Sequence[str]) -> str:
     missing = [column for column in wanted if column not in found]
     unknown = [column for column in found if column not in wanted]
+    alike = [cell for cell in unknown if missing and cell.lower() == missing[0].lower()]
     if missing:
-        problem = f"column {missing[0]} is missing"
+        problem = f"column {missing[0]} is missing" + (f", but there is {cut(repr(alike[0]))}" if alike else "")
+    elif "" in unknown:
+        problem = (
+            f"column {found.index('') + 1} has no name, as the numbers of rows that some programs add; leave it out"
+        )
     elif unknown:
         problem = f"column {cut(repr(unknown[0]))} is unknown"
     else:
