@@ -93,6 +93,7 @@ class FakeBoard:
         self._saving = 0
         self._save_state = SaveState.IDLE
         self.saves = 0
+        self.param_source = schema.ParamSource.DEFAULTS
         self.clutch = schema.Clutch.ENGAGED
         self._samples = 0
         self._enabled_at = 0
@@ -124,7 +125,7 @@ class FakeBoard:
             return self.faults.hello
         crc = schema.param_crc(self.running)
         return schema.HelloReply(
-            schema.PROTOCOL, 0, 1, 0, schema.SCHEMA_HASH, schema.Board.MEGA2560, crc, schema.ParamSource.DEFAULTS,
+            schema.PROTOCOL, 0, 1, 0, schema.SCHEMA_HASH, schema.Board.MEGA2560, crc, self.param_source,
             schema.ResetCause.EXTERNAL,
         ).pack()  # fmt: skip
 

@@ -149,6 +149,23 @@ def test_info_tells_version_crc_state_and_counters(capsys: Captured) -> None:
     assert "pots           none is at a rail" in text
 
 
+@pytest.mark.parametrize(
+    ("source", "saves", "words"),
+    [
+        (schema.ParamSource.DEFAULTS, 0, "built-in defaults; the EEPROM held no valid set\n"),
+        (schema.ParamSource.DEFAULTS, 2, "built-in defaults; the EEPROM held no valid set; a set was stored since\n"),
+        (schema.ParamSource.BANK_B, 2, "EEPROM bank B\n"),
+    ],
+)
+def test_info_tells_where_parameters_came_from_then_and_what_is_stored_now(
+    source: schema.ParamSource, saves: int, words: str, capsys: Captured
+) -> None:
+    with FakeBoard() as board:
+        board.param_source, board.saves = source, saves
+        assert entry.run(["info", "--port", board.port]) == 0
+    assert f"at the start   they came from {words}" in capsys.readouterr().out.replace("\n" + " " * 15, " ")
+
+
 def test_info_names_a_fault_with_its_place_and_remedy(capsys: Captured) -> None:
     board = FakeBoard()
     board.state, board.fault, board.fault_where = State.FAULT, schema.Fault.POT_LOW, 5

@@ -135,7 +135,8 @@ def _text(device: Device, hello: schema.HelloReply, status: schema.StatusReply, 
     rows = [
         ("board", f"{hello.board.description} on {device.port}"),
         ("firmware", f"{device.firmware_version}, protocol {hello.protocol}, schema {hello.schema_hash:#010x}"),
-        ("parameters", f"CRC {hello.param_crc:#06x}, from: {hello.param_source.description}"),
+        ("parameters", f"CRC {hello.param_crc:#06x}"),
+        ("at the start", _source(hello, status)),
         ("last start", f"{hello.reset_cause.description}, {status.tick / 1000:.1f} s ago"),
         ("state", f"{status.state.key}: {status.state.description}"),
         ("clutch", f"{status.clutch.key}: {status.clutch.description}"),
@@ -152,6 +153,12 @@ def _text(device: Device, hello: schema.HelloReply, status: schema.StatusReply, 
         *(("pots", told) for told in _tell_pots(pots)),
     ]
     return "\n".join(f"{name:<{BESIDE}}{value}" for name, value in rows)
+
+
+def _source(hello: schema.HelloReply, status: schema.StatusReply) -> str:
+    """Where the parameters came from when the board started, and whether it stored some since."""
+    stored = hello.param_source is schema.ParamSource.DEFAULTS and status.saves > 0
+    return f"they came from {hello.param_source.description}{'; a set was stored since' if stored else ''}"
 
 
 def _tell_pots(pots: PotReadings | None) -> list[str]:

@@ -53,11 +53,11 @@ class Fault(Described):
     LATE_TICK = 3, "a control tick had not finished when the next one began", "Lower the telemetry rate, then clear the fault; if it comes back, report the firmware version with `greywhale info`."
     TRACKING = 4, "a follower stayed too far from its leader for too long", "Check that joint's motor supply, motor_sign and for something in the arm's way, or raise tracking_limit or tracking_ms, then clear the fault."
     WATCHDOG = 5, "the firmware had stopped and was restarted", "Clear the fault to go on; if it comes back, check the board's supply and report the firmware version with `greywhale info`."
-    PARAMS = 6, "stored parameters were lost or cannot be run, so older ones or the defaults run now", "Bring your parameters back with `greywhale params restore`, or upload a controller file with `greywhale upload`, then clear the fault."
+    PARAMS = 6, "the board's EEPROM holds bytes that are no whole parameter set, or a set that cannot be run, so older parameters or the defaults run now", "On a board that is new to greywhale (another program's bytes), store parameters with `greywhale calibrate` or `greywhale upload`; otherwise they were lost: bring yours back with `greywhale params restore`, or upload a controller file. Then clear the fault."
     FLOOD = 7, "more bytes came than the board can read, so that a stop might have been lost", "Close other programs that use the port and check the cable for noise, then clear the fault."
     UNREST = 8, "a follower swung to and fro although the leader was still", "Lower that joint's gains (kp and ki first) or tune again with `greywhale tune`, then clear the fault; see unrest_amplitude for what counts as unrest."
     ESTOP = 9, "the emergency stop was pressed", "Release the emergency stop once it is safe, then clear the fault; without such a button set estop_input to 0, or check its wire."
-    SPEED = 10, "a follower's potentiometer jumped, or turned faster than any joint does", "Check that potentiometer's three wires, its wiper and its coupling to the joint, or raise speed_limit, then clear the fault."
+    SPEED = 10, "a follower's potentiometer jumped, or turned faster than any joint does", "Check that potentiometer's three wires, its wiper and its coupling to the joint, and whether the motors disturb it (one common ground, their wires away from the potentiometers', capacitors at the motors), or raise speed_limit, then clear the fault."
     RUNAWAY = 11, "a follower moved against its motor's voltage, faster and faster", "Check motor_sign, both motor wires and the sign of the potentiometer's scale, and that the potentiometer is that joint's own, then clear the fault."
     STALLED = 12, "a motor had voltage, but its follower did not move", "Check for something in the joint's way, its motor supply, and that its potentiometer turns with it; for a heavy load raise breakaway_volts or stall_volts, then clear the fault."
     MEMORY = 13, "the running parameters had changed in the board's memory", "Upload a controller file with `greywhale upload` or reset the board; if it comes back, check the board's supply for noise."
@@ -82,7 +82,7 @@ class NackCode(Described):
     BOOTING = 12, "the board is still starting", "Try again in a moment.", "0"
     INCONSISTENT = 13, "parameters contradict each other", "Give limit_max above limit_min and a motor_sign of 1 or -1, and upload again.", "the flat index of the first parameter that does not fit"
     LEAD_REFUSED = 14, "the host cannot lead like this", "Correct the motion and start it again.", "joint << 8 | LeadRefusal"
-    SET_LOST = 15, "parameters were lost, and nobody has confirmed those that run now", "Bring your parameters back with `greywhale params restore`, or upload a controller file with `greywhale upload`, then clear the fault.", "0"
+    SET_LOST = 15, "the EEPROM held no whole parameter set, and nobody has confirmed the parameters that run now", "Bring your parameters back with `greywhale params restore`, or store some with `greywhale calibrate` or `greywhale upload`, then clear the fault.", "0"
     ESTOP_PRESSED = 16, "the emergency stop is pressed", "Release the emergency stop once it is safe; without such a button set estop_input to 0, or check its wire.", "0"
     NO_PINS = 17, "this board has too few pins for these motor drivers", "Set driver to 0 and use motor drivers with PWM and direction, or take an Arduino Mega.", "the driver"
 
@@ -119,7 +119,7 @@ class Board(Described):
 class ParamSource(Described):
     """Where the running parameters came from at boot."""
 
-    DEFAULTS = 0, "built-in defaults; the EEPROM holds no valid set"
+    DEFAULTS = 0, "built-in defaults; the EEPROM held no valid set"
     BANK_A = 1, "EEPROM bank A"
     BANK_B = 2, "EEPROM bank B"
 

@@ -33,11 +33,11 @@ export const Fault = new Enumeration("Fault", {
   late_tick: [3, "a control tick had not finished when the next one began", "Lower the telemetry rate, then clear the fault; if it comes back, report the firmware version with `greywhale info`."],
   tracking: [4, "a follower stayed too far from its leader for too long", "Check that joint's motor supply, motor_sign and for something in the arm's way, or raise tracking_limit or tracking_ms, then clear the fault."],
   watchdog: [5, "the firmware had stopped and was restarted", "Clear the fault to go on; if it comes back, check the board's supply and report the firmware version with `greywhale info`."],
-  params: [6, "stored parameters were lost or cannot be run, so older ones or the defaults run now", "Bring your parameters back with `greywhale params restore`, or upload a controller file with `greywhale upload`, then clear the fault."],
+  params: [6, "the board's EEPROM holds bytes that are no whole parameter set, or a set that cannot be run, so older parameters or the defaults run now", "On a board that is new to greywhale (another program's bytes), store parameters with `greywhale calibrate` or `greywhale upload`; otherwise they were lost: bring yours back with `greywhale params restore`, or upload a controller file. Then clear the fault."],
   flood: [7, "more bytes came than the board can read, so that a stop might have been lost", "Close other programs that use the port and check the cable for noise, then clear the fault."],
   unrest: [8, "a follower swung to and fro although the leader was still", "Lower that joint's gains (kp and ki first) or tune again with `greywhale tune`, then clear the fault; see unrest_amplitude for what counts as unrest."],
   estop: [9, "the emergency stop was pressed", "Release the emergency stop once it is safe, then clear the fault; without such a button set estop_input to 0, or check its wire."],
-  speed: [10, "a follower's potentiometer jumped, or turned faster than any joint does", "Check that potentiometer's three wires, its wiper and its coupling to the joint, or raise speed_limit, then clear the fault."],
+  speed: [10, "a follower's potentiometer jumped, or turned faster than any joint does", "Check that potentiometer's three wires, its wiper and its coupling to the joint, and whether the motors disturb it (one common ground, their wires away from the potentiometers', capacitors at the motors), or raise speed_limit, then clear the fault."],
   runaway: [11, "a follower moved against its motor's voltage, faster and faster", "Check motor_sign, both motor wires and the sign of the potentiometer's scale, and that the potentiometer is that joint's own, then clear the fault."],
   stalled: [12, "a motor had voltage, but its follower did not move", "Check for something in the joint's way, its motor supply, and that its potentiometer turns with it; for a heavy load raise breakaway_volts or stall_volts, then clear the fault."],
   memory: [13, "the running parameters had changed in the board's memory", "Upload a controller file with `greywhale upload` or reset the board; if it comes back, check the board's supply for noise."],
@@ -61,7 +61,7 @@ export const NackCode = new Enumeration("NackCode", {
   booting: [12, "the board is still starting", "Try again in a moment.", "0"],
   inconsistent: [13, "parameters contradict each other", "Give limit_max above limit_min and a motor_sign of 1 or -1, and upload again.", "the flat index of the first parameter that does not fit"],
   lead_refused: [14, "the host cannot lead like this", "Correct the motion and start it again.", "joint << 8 | LeadRefusal"],
-  set_lost: [15, "parameters were lost, and nobody has confirmed those that run now", "Bring your parameters back with `greywhale params restore`, or upload a controller file with `greywhale upload`, then clear the fault.", "0"],
+  set_lost: [15, "the EEPROM held no whole parameter set, and nobody has confirmed the parameters that run now", "Bring your parameters back with `greywhale params restore`, or store some with `greywhale calibrate` or `greywhale upload`, then clear the fault.", "0"],
   estop_pressed: [16, "the emergency stop is pressed", "Release the emergency stop once it is safe; without such a button set estop_input to 0, or check its wire.", "0"],
   no_pins: [17, "this board has too few pins for these motor drivers", "Set driver to 0 and use motor drivers with PWM and direction, or take an Arduino Mega.", "the driver"],
 });
@@ -94,7 +94,7 @@ export const Board = new Enumeration("Board", {
 
 /** Where the running parameters came from at boot. */
 export const ParamSource = new Enumeration("ParamSource", {
-  defaults: [0, "built-in defaults; the EEPROM holds no valid set"],
+  defaults: [0, "built-in defaults; the EEPROM held no valid set"],
   bank_a: [1, "EEPROM bank A"],
   bank_b: [2, "EEPROM bank B"],
 });

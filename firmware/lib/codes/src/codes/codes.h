@@ -32,7 +32,7 @@ enum class Fault : uint8_t {
   late_tick = 3,  // a control tick had not finished when the next one began
   tracking = 4,  // a follower stayed too far from its leader for too long
   watchdog = 5,  // the firmware had stopped and was restarted
-  params = 6,  // stored parameters were lost or cannot be run, so older ones or the defaults run now
+  params = 6,  // the board's EEPROM holds bytes that are no whole parameter set, or a set that cannot be run, so older parameters or the defaults run now
   flood = 7,  // more bytes came than the board can read, so that a stop might have been lost
   unrest = 8,  // a follower swung to and fro although the leader was still
   estop = 9,  // the emergency stop was pressed
@@ -60,7 +60,7 @@ enum class NackCode : uint8_t {
   booting = 12,  // the board is still starting
   inconsistent = 13,  // parameters contradict each other
   lead_refused = 14,  // the host cannot lead like this
-  set_lost = 15,  // parameters were lost, and nobody has confirmed those that run now
+  set_lost = 15,  // the EEPROM held no whole parameter set, and nobody has confirmed the parameters that run now
   estop_pressed = 16,  // the emergency stop is pressed
   no_pins = 17,  // this board has too few pins for these motor drivers
 };
@@ -93,7 +93,7 @@ enum class Board : uint8_t {
 
 // Where the running parameters came from at boot.
 enum class ParamSource : uint8_t {
-  defaults = 0,  // built-in defaults; the EEPROM holds no valid set
+  defaults = 0,  // built-in defaults; the EEPROM held no valid set
   bank_a = 1,  // EEPROM bank A
   bank_b = 2,  // EEPROM bank B
 };
