@@ -132,13 +132,20 @@ class PortBoard(FakeBoard):
         self._master = self._slave = -1
 
 
-@contextlib.contextmanager
-def locked(port: str) -> Iterator[int]:
+def locked(port: str) -> contextlib.AbstractContextManager[int]:
     """A process that has the port open for itself alone, and is no greywhale: its number."""
-    take = (
-        "import fcntl, sys; f = open(sys.argv[1], 'rb', 0); fcntl.flock(f, fcntl.LOCK_EX); print(flush=True); input()"
-    )
-    command = [sys.executable, "-c", take, port]
+    return _elsewhere(port, "import fcntl; fcntl.flock(port, fcntl.LOCK_EX)")
+
+
+def opened(port: str, and_then: str = "") -> contextlib.AbstractContextManager[int]:
+    """A process that has the port open and asks nobody, and what it does with the file `port`: its number."""
+    return _elsewhere(port, and_then)
+
+
+@contextlib.contextmanager
+def _elsewhere(port: str, does: str) -> Iterator[int]:
+    program = f"import sys; port = open(sys.argv[1], 'rb', 0); {does}\nprint(flush=True); input()"
+    command = [sys.executable, "-c", program, port]
     with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as process:
         assert process.stdout is not None
         process.stdout.readline()

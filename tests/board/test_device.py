@@ -16,8 +16,9 @@ from greywhale.board.refusal import RefusedError
 from greywhale.protocol import schema
 from greywhale.protocol.frames import encode_frame
 from greywhale.protocol.schema import Fault, NackCode, Refusal, State
+from greywhale.protocol.transport import PortDisturbedError
 from tests.board.fake_board import FakeBoard, Faults, open_device, served
-from tests.board.port_board import PortBoard
+from tests.board.port_board import PortBoard, opened
 
 
 @pytest.mark.timeout(60)
@@ -217,3 +218,25 @@ def test_open_errors_have_their_remedies(
     with pytest.raises(UserError, match=words) as caught:
         Device(str(port))
     assert caught.value.message.startswith(f"{port}: ")
+
+
+def test_a_silent_board_with_a_second_program_at_its_port_is_not_blamed() -> None:
+    with PortBoard() as board, Device(board.port, quiet_s=0.0) as device, opened(board.port) as process:
+        board.faults.silent = True
+        with pytest.raises(PortDisturbedError, match=rf"^{board.port}: another program, process {process} "):
+            device.status()
+        board.faults.silent = False
+        assert device.status().state is State.DISABLED, "who only has the port open does no harm"
+
+
+def test_a_second_reader_does_not_keep_the_stop_from_the_board(monkeypatch: pytest.MonkeyPatch) -> None:
+    def steal(*_: object) -> bytes:
+        raise serial.SerialException("multiple access on port?")
+
+    with PortBoard() as board, Device(board.port, quiet_s=0.0) as device:
+        with pytest.raises(PortDisturbedError) as caught, device.enabled(0):
+            with monkeypatch.context() as patch:
+                patch.setattr(serial.Serial, "read", steal)
+                device.status()
+        assert not getattr(caught.value, "__notes__", []), "the stop was confirmed"
+    assert board.state is State.DISABLED

@@ -9,9 +9,10 @@ from pathlib import Path
 
 import pytest
 
+from greywhale.base import system
 from greywhale.protocol import holder
-from greywhale.protocol.holder import describe, holder_of
-from tests.board.port_board import PortBoard, locked
+from greywhale.protocol.holder import describe, holder_of, meddler, second_user_of
+from tests.board.port_board import PortBoard, locked, opened
 
 
 def test_who_has_locked_the_port_is_named_and_not_the_bench_that_made_it() -> None:
@@ -41,3 +42,50 @@ def test_where_the_system_tells_nothing_nobody_is_named(tmp_path: Path, monkeypa
         monkeypatch.setattr(holder, "PROCESSES", tmp_path)
         assert holder_of(board.port) is None
         assert describe(4711) == "process 4711"
+
+
+def test_the_second_user_is_neither_this_process_nor_who_made_the_port() -> None:
+    with PortBoard() as board:
+        mine = os.open(board.port, os.O_RDWR | os.O_NOCTTY)
+        try:
+            assert second_user_of(board.port) is None
+            with opened(board.port) as process:
+                assert (second_user_of(board.port) or "").startswith(f"process {process} (")
+        finally:
+            os.close(mine)
+    make = "import os, sys; master, slave = os.openpty(); print(os.ttyname(slave), flush=True); input()"
+    with subprocess.Popen([sys.executable, "-c", make], stdin=subprocess.PIPE, stdout=subprocess.PIPE) as bench:
+        assert bench.stdout is not None
+        port = bench.stdout.readline().decode().strip()
+        assert second_user_of(port) is None, "as a bench has it: both ends in a process of its own"
+        with opened(port) as process:
+            assert (second_user_of(port) or "").startswith(f"process {process} (")
+        bench.communicate(b"\n")
+
+
+@pytest.mark.parametrize(
+    ("program", "udev", "told"),
+    [
+        ("ModemManager", "", "`greywhale udev`"),
+        ("ModemManager", "E:ID_MM_DEVICE_IGNORE=1\n", None),
+        ("ModemManager", "E:ID_MM_PORT_IGNORE=1\n", None),
+        ("ModemManager", "E:ID_MM_CANDIDATE=1\n", "`greywhale udev`"),
+        ("brltty", "E:ID_MM_DEVICE_IGNORE=1\n", "brltty"),
+        ("bash", "", None),
+    ],
+)
+def test_a_program_that_opens_ports_of_its_own_accord_is_named_unless_udev_keeps_it_away(
+    program: str, udev: str, told: str | None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "4711").mkdir()
+    (tmp_path / "4711" / "comm").write_text(f"{program}\n")
+    monkeypatch.setattr(holder, "PROCESSES", tmp_path)
+    monkeypatch.setattr(holder, "UDEV", tmp_path)
+    with PortBoard() as board:
+        assert meddler(board.port) is None, "none of them looks at a pseudo-terminal"
+        major, minor = system.numbers(os.stat(board.port).st_rdev)
+        (tmp_path / f"c{major}:{minor}").write_text(udev)
+        monkeypatch.setattr(system, "pseudo_terminal_of", lambda device: None)
+        found = meddler(board.port)
+    assert (found is None) == (told is None)
+    assert (told or "") in (found or "")

@@ -12,7 +12,7 @@ from greywhale.base.types import show_no_progress
 from greywhale.board.flash.bootloader import Dialect
 from greywhale.board.flash.images import Image, read_image
 from greywhale.board.flash.pages import write_image
-from greywhale.protocol.transport import PortLostError
+from greywhale.protocol.transport import PortDisturbedError, PortLostError
 from tests.board.flash.fake_bootloader import ATMEGA328P, MEGA2560, FakeBootloader, Spoil, Version1, Version2
 from tests.board.flash.hex_files import hex_text
 
@@ -161,6 +161,18 @@ def test_a_port_that_goes_away_is_named_whenever_it_does(kind: Kind, asked: str,
 
     with board(kind, spoil=unplug) as to, pytest.raises(UserError, match=r"went away while it was being flashed; con"):
         write(to, image(tmp_path, (0, PATTERN)))
+
+
+@BOTH
+def test_another_program_at_the_port_is_named_and_that_the_image_is_not_whole(kind: Kind, tmp_path: Path) -> None:
+    def disturb(asked: str, count: int) -> str:
+        if (asked, count) == ("write", 3):
+            raise PortDisturbedError(to.port, "reads from the port too")
+        return ""
+
+    with board(kind, spoil=disturb) as to, pytest.raises(PortDisturbedError, match="reads from the port too") as caught:
+        write(to, image(tmp_path, (0, PATTERN)))
+    assert caught.value.__notes__ == ["The board was not flashed whole: flash it again."]
 
 
 @BOTH

@@ -49,7 +49,7 @@ HAS_ABSTRACT_SOCKETS = sys.platform == "linux"
 # How a file is opened: as it is on the disk, and not where a link leads.
 _PLAIN = getattr(os, "O_BINARY", 0) | getattr(os, "O_NOFOLLOW", 0)
 _FAR = 1 << 40  # Windows keeps others from reading what is locked, and no file of ours is so long
-_PSEUDO_TERMINALS = range(136, 144)  # major numbers of devices
+PSEUDO_TERMINALS = range(136, 144)  # major numbers of devices
 _PEER = struct.Struct("3i")  # struct ucred: process, user, group
 # What Linux is asked of a TCP socket and what it answers (linux/netlink.h, linux/inet_diag.h): a head of length, type,
 # flags and two numbers; then family, protocol, two bytes and all states, two ports, two addresses, interface, cookie.
@@ -63,7 +63,7 @@ _HEAD, _WANTED, _ENDS, _ANY = (
 _ALL = 0xFFFFFFFF
 _USER = struct.Struct("=I")
 _USER_AT = 80  # from the start of an answer
-_CFLAG = 2  # place of the control flags in what termios returns
+_CFLAG, _SPEED, _CHARACTERS = 2, 5, 6  # places in what termios returns
 
 
 # --- files and folders ------------------------------------------------------------------------------------------------
@@ -260,7 +260,7 @@ def device_of(port: str) -> str | None:
         return None
     if not stat.S_ISCHR(found.st_mode):
         return None
-    made = f":{found.st_ctime_ns}" if os.major(found.st_rdev) in _PSEUDO_TERMINALS else ""
+    made = f":{found.st_ctime_ns}" if os.major(found.st_rdev) in PSEUDO_TERMINALS else ""
     return f"{os.major(found.st_rdev)}:{os.minor(found.st_rdev)}{made}"
 
 
@@ -337,3 +337,44 @@ def keep_dtr(line: io.RawIOBase, up: bool) -> None:
             flags = termios.tcgetattr(line.fileno())
             flags[_CFLAG] = flags[_CFLAG] & ~termios.HUPCL if up else flags[_CFLAG] | termios.HUPCL
             termios.tcsetattr(line.fileno(), termios.TCSANOW, flags)
+
+
+def line_settings(line: io.RawIOBase) -> tuple[int, ...] | None:
+    """How an open port is set: flags and speeds. None where the system has hung it up, and on Windows."""
+    if sys.platform == "win32":
+        return None
+    else:
+        try:
+            found: list[int] = termios.tcgetattr(line.fileno())[:_CHARACTERS]
+        except (termios.error, OSError, TypeError):  # TypeError: pyserial's, of a port that is closed
+            return None
+        found[_CFLAG] &= ~termios.HUPCL  # which this side changes itself
+        return tuple(found)
+
+
+def speed_in(settings: tuple[int, ...]) -> int | None:
+    """The speed (baud) among a port's settings, None for one without a name."""
+    if sys.platform == "win32":
+        return None
+    else:
+        names = [name for name in dir(termios) if re.fullmatch(r"B\d+", name)]
+        return next((int(name[1:]) for name in names if getattr(termios, name) == settings[_SPEED]), None)
+
+
+def keep_others_out(line: io.RawIOBase, keep: bool) -> None:
+    """Let no other program but a superuser's open a port that this one has open.
+
+    Not a pseudo-terminal: whoever made it has it open too, so that it would stay closed after a process that was
+    killed. Windows does so by itself.
+    """
+    if sys.platform != "win32":
+        with contextlib.suppress(OSError):
+            if os.major(os.fstat(line.fileno()).st_rdev) not in PSEUDO_TERMINALS:
+                fcntl.ioctl(line.fileno(), termios.TIOCEXCL if keep else termios.TIOCNXCL)
+
+
+def pseudo_terminal_of(device: int) -> int | None:
+    """The number of a pseudo-terminal, 3 for /dev/pts/3; None where a device is none."""
+    if sys.platform != "linux" or os.major(device) not in PSEUDO_TERMINALS:
+        return None
+    return (os.major(device) - PSEUDO_TERMINALS.start) * 256 + os.minor(device)

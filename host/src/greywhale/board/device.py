@@ -22,7 +22,7 @@ from greywhale.board.session import Session
 from greywhale.protocol import schema
 from greywhale.protocol.declared import Reply_co, Request
 from greywhale.protocol.frames import Frame, FrameDecoder, encode_frame
-from greywhale.protocol.transport import Line, PortLostError, open_line
+from greywhale.protocol.transport import Line, PortDisturbedError, PortLostError, disturbance, open_line
 
 # After this long without an answer a request is repeated, unchanged. Every request may be repeated safely.
 REPLY_WAIT_S = 0.3
@@ -135,7 +135,10 @@ class Device:
     def ask(self, request: Request[Reply_co]) -> Reply_co:
         """Send a request until it is answered, and return the answer; a refusal is a UserError with its remedy."""
         self._session.check()
-        payload = self._exchange(request.TYPE, request.NAME, request.pack(), ATTEMPTS)
+        try:
+            payload = self._exchange(request.TYPE, request.NAME, request.pack(), ATTEMPTS)
+        except NoAnswerError as silence:
+            raise disturbance(self._transport) or silence from None
         try:
             return request.reply(payload)
         except UserError as error:
@@ -209,7 +212,7 @@ class Device:
             try:
                 self.stop()
             except UserError as problem:
-                gone = isinstance(error, PortLostError)  # which needs not be said twice
+                gone = isinstance(error, PortLostError | PortDisturbedError)  # which needs not be said twice
                 error.add_note(self._unconfirmed_stop() if gone else problem.message)
             raise
         self.stop()
@@ -229,8 +232,9 @@ class Device:
             try:
                 message = stop_message(self._next_sequence())
                 answer = self._repeat(
-                    message, schema.StopRequest.TYPE, schema.StopRequest.NAME, STOP_ATTEMPTS, STOP_REPEAT_S
-                )
+                    message, schema.StopRequest.TYPE, schema.StopRequest.NAME, STOP_ATTEMPTS, STOP_REPEAT_S,
+                    PortDisturbedError,  # that somebody else reads does not keep the stop from the board
+                )  # fmt: skip
                 state = schema.StopReply.unpack(answer).state.key
                 logger.info("%s: motors off, state %s", self.port, state)
                 self._session.confirm({"state": state})
@@ -258,14 +262,17 @@ class Device:
         message = encode_frame(kind, self._next_sequence(), payload)
         return self._repeat(message, kind, name, attempts, REPLY_WAIT_S)
 
-    def _repeat(self, message: bytes, kind: int, name: str, attempts: int, wait_s: float) -> bytes:
-        """Send a message again and again until its request is answered."""
+    def _repeat(
+        self, message: bytes, kind: int, name: str, attempts: int, wait_s: float, *ignored: type[UserError]
+    ) -> bytes:
+        """Send a message again and again until its request is answered, whatever `ignored` failures come between."""
         for attempt in range(1, attempts + 1):
             logger.debug("%s: %s, attempt %d of %d: %s", self.port, name, attempt, attempts, message.hex())
             self._transport.write(message)
             deadline = self._transport.clock() + wait_s
             while self._transport.clock() < deadline:
-                self._receive()
+                with contextlib.suppress(*ignored):
+                    self._receive()
                 self._check_restart()
                 for frame in self._answers():
                     logger.debug("%s: %s answered: %02x %s", self.port, name, frame.type, frame.payload.hex())
@@ -370,6 +377,8 @@ class Device:
         return hello
 
     def _silent(self, patience_s: float) -> UserError:
+        if disturbed := disturbance(self._transport):
+            return disturbed
         if self._heard_bytes:
             return UserError(
                 f"{self.port}: something sends data, but no greywhale firmware answers within {patience_s:g} s; "

@@ -30,6 +30,7 @@ from greywhale.cli.countdown import prepare_motion, yes_option
 from greywhale.cli.output import FILE, OnPort, json_option, option, overwrite_option, port_option, progress, show
 from greywhale.files.leader import save_leader
 from greywhale.files.outputs import require_new
+from greywhale.protocol.holder import meddler
 from greywhale.protocol.ports import choose_port
 
 if TYPE_CHECKING:
@@ -153,7 +154,7 @@ def command(
             with Device(chosen) as device, progress() as report:
                 recorded = record(device, out, length, every, enable, report, disengaged)
         answer: Answer = {"port": chosen, **recorded.as_dict()}
-        show(as_json, answer, describe(recorded))
+        show(as_json, answer, describe(chosen, recorded))
         return
     if enable:
         raise BadUsage("--excite turns the motors on by itself; leave --enable out.")
@@ -178,7 +179,7 @@ def command(
             recording = record_led(device, out, designed.motion, every, report, running)
     saved: Saved = {} if save_motion is None else {"motion": str(save_motion)}
     result: ExciteAnswer = {"port": device.port, **recording.as_dict(), "design": _facts(designed), **saved}
-    show(as_json, result, f"{describe(recording)}\n{designed.text()}")
+    show(as_json, result, f"{describe(chosen, recording)}\n{designed.text()}")
 
 
 def _facts(designed: Design) -> DesignFacts:
@@ -215,7 +216,8 @@ def _refuse_without_excite(**given: object) -> None:
             raise BadUsage(f"{_OF_EXCITE[name]} belongs to --excite; add that, or leave it out.")
 
 
-def describe(recording: Recording) -> str:
+def describe(port: str, recording: Recording) -> str:
+    """What was recorded on a port, and what may have lost some of it, where that is known."""
     lost = f", {recording.dropped} dropped by the link" if recording.dropped else ""
     waits = slow = ""
     if isinstance(recording, LedRecording):
@@ -225,4 +227,6 @@ def describe(recording: Recording) -> str:
             slow = f", slowed down to {100 * recording.slowest:.0f} % where a follower lagged"
     gaps = "".join(f" The port was away for {length:g} s after {begin:g} s." for begin, length in recording.gaps)
     samples = counted(recording.rows, "sample")
-    return f"{recording.path}: {samples}{lost}, {recording.duration_s:g} s{waits}{slow}.{gaps}"
+    remedy = meddler(port) if recording.dropped else None
+    loser = "" if remedy is None else f" If it loses samples again, {remedy}."
+    return f"{recording.path}: {samples}{lost}, {recording.duration_s:g} s{waits}{slow}.{gaps}{loser}"

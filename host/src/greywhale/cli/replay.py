@@ -67,4 +67,4 @@ def command(motion: Path, out: Path, every: int, overwrite: bool, yes: bool, por
         "warnings": list(trajectory.remarks),
         **recording.as_dict(),
     }
-    show(as_json, answer, describe(recording))
+    show(as_json, answer, describe(chosen, recording))

@@ -17,7 +17,7 @@ import serial
 
 from greywhale.base import system
 from greywhale.base.errors import UserError, os_reason
-from greywhale.protocol.holder import holder_of
+from greywhale.protocol.holder import holder_of, meddler, second_user_of
 
 BAUD = 1_000_000
 
@@ -27,6 +27,7 @@ _WRITE_WAIT_S = 1.0
 # So long is DTR down before it rises again: a board's reset line needs some 2 ms.
 _DTR_DOWN_S = 0.05
 _BUSY = (errno.EBUSY, errno.EAGAIN, errno.EWOULDBLOCK)
+_HAS_OPEN, _READS = "has the port open too", "reads from the port too"
 
 
 class PortLostError(UserError):
@@ -43,6 +44,18 @@ class PortBusyError(UserError):
         holder = holder_of(port)
         by, what = ("another program", " (a serial monitor?)") if holder is None else (holder, "")
         super().__init__(f"{port}: the port is in use by {by}; close that{what} and try again.")
+
+
+class PortDisturbedError(UserError):
+    """The port is there, but another program reads from it, or has set it in another way."""
+
+    def __init__(self, port: str, what: str) -> None:
+        user = second_user_of(port)
+        if user is not None:
+            who, remedy = f"another program, {user},", "close that program"
+        else:
+            who, remedy = "another program", meddler(port) or "close what else may use the port"
+        super().__init__(f"{port}: {who} {what}, and two cannot share a port; {remedy}, and try again.")
 
 
 class Line(Protocol):
@@ -70,6 +83,11 @@ def open_line(port: str, restart: bool = True, baud: int = BAUD) -> Line:
     return Transport(port, restart, baud) if opened is None else opened(restart, baud)
 
 
+def disturbance(line: Line) -> PortDisturbedError | None:
+    """What another program does to a line, as far as the system tells; None where nothing is known of that kind."""
+    return line.disturbance() if isinstance(line, Transport) else None
+
+
 class Transport:
     """An open port; every failure of it is a UserError that names it."""
 
@@ -79,6 +97,7 @@ class Transport:
         self._to_firmware = baud == BAUD
         self._serial = _open_serial(port, baud, restart)
         self.restarted = restart or not system.keeps_dtr(self._serial)
+        self._settings = system.line_settings(self._serial)
         self._writing = threading.Lock()  # two threads never mix their frames
 
     def read(self) -> bytes:
@@ -86,7 +105,7 @@ class Transport:
         try:
             return bytes(self._serial.read(self._serial.in_waiting or 1))
         except (OSError, TypeError):  # pyserial reads from a port closed under it as a TypeError
-            raise PortLostError(self.port) from None
+            raise self._lost() from None
 
     def write(self, data: bytes) -> None:
         try:
@@ -97,7 +116,13 @@ class Transport:
                 f"{self.port}: the port takes no data; unplug the board, plug it in and try again."
             ) from None
         except (OSError, TypeError):
-            raise PortLostError(self.port) from None
+            raise self._lost() from None
+
+    def disturbance(self) -> PortDisturbedError | None:
+        """What another program does to the port, as far as the system tells."""
+        if changed := self._changed():
+            return changed
+        return None if second_user_of(self.port) is None else PortDisturbedError(self.port, _HAS_OPEN)
 
     def clock(self) -> float:
         """This machine's own."""
@@ -110,7 +135,24 @@ class Transport:
         with self._writing:
             if self._serial.is_open and self._to_firmware:
                 system.keep_dtr(self._serial, True)
-            self._serial.close()
+            _close(self._serial)
+
+    def _lost(self) -> UserError:
+        """Why a port fails: it has gone, or somebody else takes its bytes."""
+        if system.line_settings(self._serial) is None:
+            return PortLostError(self.port)
+        return self._changed() or PortDisturbedError(self.port, _READS)
+
+    def _changed(self) -> PortDisturbedError | None:
+        """Another program's settings on a port that is still there."""
+        settings = system.line_settings(self._serial)
+        if settings is None or self._settings is None or settings == self._settings:
+            return None
+        before, now = system.speed_in(self._settings), system.speed_in(settings)
+        if before == now:
+            return PortDisturbedError(self.port, "changed the settings of the port")
+        speed = "another speed" if now is None else f"{now} baud"
+        return PortDisturbedError(self.port, f"set the port to {speed} instead of {before}")
 
 
 def _open_serial(port: str, baud: int, restart: bool) -> serial.Serial:
@@ -118,7 +160,7 @@ def _open_serial(port: str, baud: int, restart: bool) -> serial.Serial:
     line = _open(port, baud)
     if restart and system.keeps_dtr(line):
         system.keep_dtr(line, False)
-        line.close()
+        _close(line)
         time.sleep(_DTR_DOWN_S)
         line = _open(port, baud)
     return line
@@ -130,13 +172,21 @@ def _open(port: str, baud: int) -> serial.Serial:
     try:
         if system.is_own_terminal(port):
             raise UserError(f"{port}: this is a terminal, not a board's port; `greywhale ports` lists those there are.")
-        return serial.Serial(port, baud, timeout=READ_WAIT_S, write_timeout=_WRITE_WAIT_S, exclusive=True)
+        line = serial.Serial(port, baud, timeout=READ_WAIT_S, write_timeout=_WRITE_WAIT_S, exclusive=True)
     except ValueError as error:
         raise UserError(f"{port}: cannot be opened: {error}.") from None
     except OSError as error:
         if system.open_errno(error) in _BUSY:
             raise PortBusyError(port) from None
         raise UserError(_why_not_open(port, error)) from None
+    system.keep_others_out(line, True)
+    return line
+
+
+def _close(line: serial.Serial) -> None:
+    if line.is_open:
+        system.keep_others_out(line, False)
+    line.close()
 
 
 def _why_not_open(port: str, error: OSError) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from greywhale.base import system
 from greywhale.board.doctor.finding import Finding, Verdict
 from greywhale.board.refusal import upper_first
+from greywhale.protocol.holder import meddler, second_user_of
 from greywhale.protocol.ports import find_ports, is_bench
 from greywhale.protocol.transport import LINES
 
@@ -28,13 +29,23 @@ def examine_port(port: str) -> list[Finding]:
     what = "a simulated board's port" if is_bench(port) else "a serial port"
     found = [Finding("port", Verdict.GOOD, f"{port} is {what}.")]
     if system.may_open(port):
-        return [*found, Finding("permission", Verdict.GOOD, "This user may open it.")]
+        return [*found, Finding("permission", Verdict.GOOD, "This user may open it."), *_others(port)]
     return [*found, Finding("permission", Verdict.BAD, f"This user may not open {port}.", _permission_remedy(port))]
+
+
+def _others(port: str) -> list[Finding]:
+    """Programs beside this one that have the port open, or may open it of their own accord."""
+    if user := second_user_of(port):
+        return [Finding("other programs", Verdict.NOTE, f"The port is open in {user} too.", "Close that program.")]
+    if remedy := meddler(port):
+        says = "A program that opens serial ports of its own accord runs on this computer."
+        return [Finding("other programs", Verdict.NOTE, says, f"{upper_first(remedy)}.")]
+    return []
 
 
 def udev_rules() -> str:
     """Rules that let whoever sits at this machine open an Arduino's port, and keep modem software away from it."""
-    then = 'MODE="0660", TAG+="uaccess", ENV{ID_MM_DEVICE_IGNORE}="1"'
+    then = 'MODE="0660", TAG+="uaccess", ENV{ID_MM_DEVICE_IGNORE}="1", ENV{ID_MM_PORT_IGNORE}="1"'
     lines = [
         f"# Arduino boards and their USB bridges, for greywhale. Put this into {RULES_FILE}, then:",
         "#   sudo udevadm control --reload && sudo udevadm trigger",

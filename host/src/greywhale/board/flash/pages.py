@@ -13,7 +13,7 @@ from greywhale.base.types import Progress
 from greywhale.board.flash.bootloader import Dialect, enter_bootloader
 from greywhale.board.flash.images import ERASED, Image
 from greywhale.board.flash.stk500 import Stk500
-from greywhale.protocol.transport import PortLostError
+from greywhale.protocol.transport import PortDisturbedError, PortLostError
 
 _ATTEMPTS = 3
 _NOTHING = 2 * ERASED  # a word that changes nothing wherever it is written, but a page is erased for it
@@ -67,6 +67,9 @@ def write_image(port: str, dialect: Dialect, image: Image, size: int, report: Pr
             line.leave()
     except PortLostError:
         raise UserError(f"{port} went away while it was being flashed; connect the board and flash it again.") from None
+    except PortDisturbedError as disturbed:
+        disturbed.add_note("The board was not flashed whole: flash it again.")
+        raise
 
 
 def blocks_of(image: Image, size: int) -> list[range]:
