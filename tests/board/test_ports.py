@@ -23,8 +23,20 @@ def _no_real_ports(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(list_ports, "comports", list)
 
 
-def usb(device: str, vid: int | None, pid: int | None) -> SimpleNamespace:
-    return SimpleNamespace(device=device, vid=vid, pid=pid, description="what the system says")
+def usb(
+    device: str, vid: int | None, pid: int | None, description: str | None = "what the system says"
+) -> SimpleNamespace:
+    return SimpleNamespace(device=device, vid=vid, pid=pid, description=description)
+
+
+MEGA, BRIDGE, UNKNOWN = (0x2341, 0x0042), (0x1A86, 0x7523), (0x1234, 0x5678)
+GPS = (0x1546, 0x01A8, "u-blox 7 - GPS/GNSS Receiver")
+MODEM = (0x12D1, 0x1001, "HUAWEI Mobile")
+PRINTER = (0x2C99, 0x0002, "Original Prusa i3 MK3")
+NAMED_MODEM = (*UNKNOWN, "SuperLTE modem, control port")
+NAMED_GPS = (0x067B, 0x2303, "BU-353 GPS receiver")
+PICO = (0x2E8A, 0x000A, "Pico")
+UNO = (0x2341, 0x0043)
 
 
 def plug(monkeypatch: pytest.MonkeyPatch, *found: SimpleNamespace) -> None:
@@ -72,7 +84,7 @@ def test_boards_are_known_by_their_usb_numbers(monkeypatch: pytest.MonkeyPatch) 
     found = ports.find_ports()
     assert [(one.device, one.board, one.likely) for one in found] == [
         ("/dev/ttyACM0", "mega", True),
-        ("/dev/ttyACM1", None, True),
+        ("/dev/ttyACM1", None, False),
         ("/dev/ttyS0", None, False),
         ("/dev/ttyUSB0", None, True),
     ]
@@ -94,3 +106,52 @@ def test_no_port_or_several_are_one_sentence(monkeypatch: pytest.MonkeyPatch) ->
     plug(monkeypatch, usb("/dev/ttyACM0", 0x2341, 0x0042), usb("/dev/ttyACM1", 0x2341, 0x0042))
     with pytest.raises(UserError, match="/dev/ttyACM0, /dev/ttyACM1; choose one with --port"):
         ports.choose_port(None)
+
+
+@pytest.mark.parametrize(
+    ("devices", "chosen"),
+    [
+        ([BRIDGE], 0),  # a clone of a board: it does not name itself
+        ([UNKNOWN], 0),
+        ([MEGA, BRIDGE], 0),
+        ([BRIDGE, MEGA, UNKNOWN], 1),
+        ([UNKNOWN, BRIDGE], 1),
+        ([GPS, BRIDGE], 1),
+        ([MODEM, PRINTER, UNKNOWN], 2),
+        ([NAMED_MODEM, NAMED_GPS, PICO, UNO, BRIDGE], 4),
+    ],
+)
+def test_the_likeliest_port_is_chosen(
+    devices: list[tuple[int, int]], chosen: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    plug(monkeypatch, *(usb(f"/dev/ttyUSB{place}", *device) for place, device in enumerate(devices)))
+    assert ports.choose_port(None) == f"/dev/ttyUSB{chosen}"
+
+
+@pytest.mark.parametrize("device", [GPS, MODEM, PRINTER, NAMED_MODEM, NAMED_GPS, PICO, UNO])
+def test_what_is_known_to_be_something_else_is_never_opened_by_itself(
+    device: tuple[int, int], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    plug(monkeypatch, usb("/dev/ttyACM0", *device))
+    with pytest.raises(UserError, match=r"no board was found .*\(/dev/ttyACM0 is not opened: .*does not run on"):
+        ports.choose_port(None)
+    assert ports.choose_port("/dev/ttyACM0") == "/dev/ttyACM0", "whoever names it knows better"
+
+
+@pytest.mark.parametrize("description", ["USB2.0-Serial", "FT232R USB UART", "CP2102 USB to UART Bridge", "", None])
+def test_what_says_nothing_may_be_a_board(description: str | None, monkeypatch: pytest.MonkeyPatch) -> None:
+    plug(monkeypatch, usb("/dev/ttyUSB0", *UNKNOWN, description))
+    assert ports.choose_port(None) == "/dev/ttyUSB0"
+
+
+@pytest.mark.parametrize(("device", "asks"), [(MEGA, True), (BRIDGE, True), (UNKNOWN, False), (GPS, False)])
+def test_a_bench_gives_way_to_no_board_and_to_no_foreign_device(
+    device: tuple[int, int], asks: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    link = bench(f"mega-{os.getpid()}", "/dev/null")
+    plug(monkeypatch, usb("/dev/ttyUSB0", *device))
+    if asks:
+        with pytest.raises(UserError, match=rf"{link}, /dev/ttyUSB0; choose one with --port"):
+            ports.choose_port(None)
+    else:
+        assert ports.choose_port(None) == str(link)
