@@ -16,6 +16,7 @@ import { LiveView } from "./live/view";
 import { State } from "./link/schema";
 import { ParametersView } from "./parameters/view";
 import { button, el, select } from "./parts/dom";
+import { sentenceOf } from "./parts/sentence";
 import { browserStore } from "./parts/storage";
 import { startTheme } from "./parts/theme";
 import { beside } from "./parts/view";
@@ -44,12 +45,8 @@ export function openPage(parts: Promise<Parts>): void {
   startTheme();
   addEventListener("hashchange", () => location.reload());
   parts.then(atPort() ? showPort : showBench).catch((error: unknown) => {
-    document.body.append(el("main", {}, el("p", {}, `${sentence(error)}; load it again.`)));
+    document.body.append(el("main", {}, el("p", {}, `${sentenceOf(error)}; load it again.`)));
   });
-}
-
-function sentence(error: unknown): string {
-  return error instanceof Error ? error.message : String(error);
 }
 
 function atPort(): boolean {
@@ -101,11 +98,11 @@ async function showBench({ code, data, worker, tuner, docs }: Parts): Promise<vo
   try {
     state = stateOf(location.hash.slice(1), views.map(({ name }) => name), await board.controls());
   } catch (error) {
-    problem = sentence(error);
+    problem = sentenceOf(error);
   }
   if (state) controller.showJoint(state.joint);
   const shell = new Shell(session, views, [
-    "The firmware of a real board and a simulated arm run inside this page; they need a browser with WebAssembly.",
+    "The firmware of a real board and a simulated arm run inside this page; they need a browser with WebAssembly. A board at a port needs none: choose it in the list Board.",
   ], views.find(({ name }) => name === state?.view));
   const copy = button("Copy link", () => void session.attempt(async () => copyLink(session, {
     view: shell.shown, joint: controller.shownJoint, ...board.condition(session.samples.newest("leader")), raw: await session.readParameters(),

@@ -8,6 +8,7 @@ import {
   ClearFaultRequest, ClutchRequest, EnableRequest, HelloReply, HelloRequest, LeadPointRequest, LeadReply, LeadRequest, NackCode,
   ParamApplyRequest, ParamGetRequest, ParamSaveRequest, ParamSetRequest, Sample, SaveState, SCHEMA_HASH, State, StatusReply, StatusRequest, StopRequest, TABLE, TelemetryRequest,
 } from "./link/schema";
+import { sentenceOf } from "./parts/sentence";
 import { Signal } from "./parts/signal";
 import { Samples } from "./samples/samples";
 
@@ -128,7 +129,7 @@ export class Session {
       await act();
       return true;
     } catch (error) {
-      this.tell(error instanceof Error ? error.message : String(error));
+      this.tell(sentenceOf(error));
       return false;
     }
   }
@@ -301,7 +302,7 @@ export class Session {
         break;
       } catch (error) {
         if (left <= 0) {
-          this.tell(error instanceof Error ? error.message : String(error));
+          this.tell(sentenceOf(error));
           break;
         }
         await new Promise((resolve) => setTimeout(resolve, STATUS_EVERY_MS));

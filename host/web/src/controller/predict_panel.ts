@@ -2,6 +2,7 @@
 
 import { el, setText } from "../parts/dom";
 import { motionCanvas, paintMotions } from "../parts/motions";
+import { sentenceOf } from "../parts/sentence";
 import type { Host, Prediction } from "../host";
 
 export class PredictPanel {
@@ -44,7 +45,7 @@ export class PredictPanel {
         this.last = await this.host.predict(raw, board);
         setText(this.problem, "");
       } catch (error) {
-        setText(this.problem, error instanceof Error ? error.message : String(error));
+        setText(this.problem, sentenceOf(error));
       }
       this.draw();
     }

@@ -3,6 +3,7 @@
 import { curvesPicture } from "../parts/curves";
 import { button, el, setText } from "../parts/dom";
 import { motionCanvas, paintMotions } from "../parts/motions";
+import { sentenceOf } from "../parts/sentence";
 import { themeChanged } from "../parts/theme";
 import type { Searched, Tuned, Tuner } from "../host";
 
@@ -56,7 +57,7 @@ export class TunePanel {
       setText(this.words, sentence(this.tuned));
       this.draw();
     } catch (error) {
-      setText(this.words, error instanceof Error ? error.message : String(error));
+      setText(this.words, sentenceOf(error));
     }
     this.searching(false);
   }

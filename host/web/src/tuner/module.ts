@@ -1,5 +1,6 @@
 // The closed loop of many candidates as WebAssembly (host/native/web/exports.cpp), on the arm of the data.
 
+import { startCode, type Exports } from "../parts/web_assembly";
 import type { Drill, Noise, Rests, Steps, TunerData } from "./data";
 import type { Row } from "./space";
 import type { Elementary } from "./wolf_whale";
@@ -9,8 +10,6 @@ export const ALL = [0, 1, 2, 3]; // of them
 export const TICK_S = 1e-3;
 const SLICES = 4; // of a tick
 export type Controllers = readonly Row[]; // of four joints
-
-type Exports = { readonly memory: WebAssembly.Memory } & Readonly<Record<string, (...given: number[]) => number>>;
 
 /** Of a candidate on a plant, of each joint. */
 export type Following = {
@@ -25,21 +24,14 @@ export type Resting = {
 export type Trace = { readonly leader: readonly number[][]; readonly follower: readonly number[][] };
 
 export class TunerModule implements Elementary {
-  private readonly exports: Exports;
   private readonly lengths: number[] = [];
 
-  constructor(instance: WebAssembly.Instance, private readonly data: TunerData) {
-    this.exports = instance.exports as unknown as Exports;
+  constructor(private readonly exports: Exports, private readonly data: TunerData) {
     this.call("_initialize");
   }
 
   static async load(code: BufferSource, data: TunerData): Promise<TunerModule> {
-    const refuse = (): never => {
-      throw new Error("the tuner asked for a file");
-    };
-    const files = { fd_close: refuse, fd_seek: refuse, fd_write: refuse };
-    const { instance } = await WebAssembly.instantiate(code, { wasi_snapshot_preview1: files });
-    return new TunerModule(instance, data);
+    return new TunerModule(await startCode(code, "the search"), data);
   }
 
   private call(name: string, ...given: number[]): number {

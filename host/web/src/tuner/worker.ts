@@ -1,5 +1,6 @@
 // The worker that tunes: it searches batch by batch, and between two of them hears whether it shall stop.
 
+import { sentenceOf } from "../parts/sentence";
 import type { FromTuner, ToTuner } from "./data";
 import { TunerModule } from "./module";
 import { Tuning } from "./tuning";
@@ -23,5 +24,5 @@ async function tune({ code, data, before }: Extract<ToTuner, { kind: "tune" }>):
 page.addEventListener("message", ({ data: message }) => {
   if (message.kind === "stop") stopped = true;
   else tune(message).catch((error: unknown) =>
-    page.postMessage({ kind: "failed", sentence: `The tuner has ended (${error instanceof Error ? error.message : String(error)}).` }));
+    page.postMessage({ kind: "failed", sentence: `The tuner has ended: ${sentenceOf(error)}` }));
 });

@@ -31,7 +31,7 @@ export class PageBoard implements Board, BenchActions {
   ) {
     this.sizes = Object.fromEntries(SIZES.map((size) => [size, this.range(size).value])) as Record<Size, number>;
     worker.addEventListener("message", ({ data: message }: MessageEvent<FromBench>) => this.heard(message));
-    worker.addEventListener("error", ({ message }) => this.failed(`The bench does not start: ${message}; reload the page.`));
+    worker.addEventListener("error", ({ message }) => this.failed(`The bench does not start (${message || "its worker is refused"}); reload the page.`));
     document.addEventListener("visibilitychange", () => this.showVisible());
   }
 

@@ -1,5 +1,6 @@
 // The bench as WebAssembly (sim/web/exports.cpp): firmware, arm, potentiometers, hands. It knows no clock and no page.
 
+import { startCode, type Exports } from "../../parts/web_assembly";
 import type { Call } from "./messages";
 
 export const TICK_SLICES = 4; // of 250 us
@@ -8,24 +9,14 @@ const NUMBERS = 256;
 const BYTES = 4096;
 const LEADER_AT = 12; // of what `look` shows
 
-type Exports = { readonly memory: WebAssembly.Memory } & Readonly<Record<string, (...given: number[]) => number>>;
-
 export class BenchModule {
-  private readonly exports: Exports;
-
-  private constructor(instance: WebAssembly.Instance) {
-    this.exports = instance.exports as unknown as Exports;
+  private constructor(private readonly exports: Exports) {
     this.call("_initialize");
   }
 
   /** A bench with this arm, its power off. */
   static async load(code: BufferSource, arm: readonly number[]): Promise<BenchModule> {
-    const refuse = (): never => {
-      throw new Error("the bench asked for a file");
-    };
-    const files = { fd_close: refuse, fd_seek: refuse, fd_write: refuse };
-    const { instance } = await WebAssembly.instantiate(code, { wasi_snapshot_preview1: files });
-    const module = new BenchModule(instance);
+    const module = new BenchModule(await startCode(code, "the simulated bench"));
     module.numbers().set(arm);
     module.call("start", SEED);
     return module;

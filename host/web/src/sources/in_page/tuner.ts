@@ -21,7 +21,7 @@ export class PageTuner implements Tuner {
           else if (message.kind === "tuned") settle(message.tuned);
           else fail(new Error(message.sentence));
         });
-        worker.addEventListener("error", ({ message }) => fail(new Error(`The tuner does not start: ${message}.`)));
+        worker.addEventListener("error", ({ message }) => fail(new Error(`The tuner does not start (${message || "its worker is refused"}).`)));
         this.tell({ kind: "tune", code, data, before });
       });
     } finally {

@@ -1,5 +1,6 @@
 // The worker in which the bench lives: by the wall clock, and never far ahead of what the page has worked off.
 
+import { sentenceOf } from "../../parts/sentence";
 import { Clock } from "./clock";
 import { Life } from "./life";
 import type { FromBench, ToBench } from "./messages";
@@ -53,7 +54,7 @@ class Bench {
       this.life.change(wish);
     } catch (problem) {
       if (problem instanceof WebAssembly.RuntimeError) return this.fail(problem);
-      error = problem instanceof Error ? problem.message : String(problem);
+      error = sentenceOf(problem);
     }
     page.postMessage({ kind: "done", id, error });
   }
@@ -97,7 +98,7 @@ class Bench {
 
   private fail(problem: unknown): void {
     clearInterval(this.timer);
-    const why = problem instanceof Error ? problem.message : String(problem);
+    const why = sentenceOf(problem);
     page.postMessage({ kind: "failed", sentence: `The simulated bench has ended (${why}); reload the page.` });
   }
 }
@@ -111,6 +112,6 @@ page.addEventListener("message", ({ data: message }) => {
       bench = new Bench(module, message);
       page.postMessage({ kind: "ready" });
     },
-    (error: unknown) => page.postMessage({ kind: "failed", sentence: `This browser cannot run the bench: ${String(error)}.` }),
+    (error: unknown) => page.postMessage({ kind: "failed", sentence: sentenceOf(error) }),
   );
 });

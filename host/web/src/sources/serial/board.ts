@@ -4,6 +4,7 @@ import type { Board, BoardListener } from "../../board";
 import { LinkError } from "../../link/declared";
 import { encodeFrame } from "../../link/frames";
 import { ResetCause, StopRequest, TelemetryRequest } from "../../link/schema";
+import { sentenceOf } from "../../parts/sentence";
 import type { BoardPort, NamedText, Report } from "../../port";
 import { flash } from "./flash/flash";
 import { Lease } from "./lease";
@@ -145,7 +146,7 @@ export class SerialBoard implements Board, BoardPort {
     try {
       await this.open(false);
     } catch (error) {
-      this.tell(false, error instanceof Error ? error.message : String(error));
+      this.tell(false, sentenceOf(error));
     }
   }
 

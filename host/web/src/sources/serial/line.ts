@@ -1,6 +1,7 @@
 // A serial port of the browser that is open: bytes come and go, DTR restarts the board, and a lost port is told.
 
 import { LinkError } from "../../link/declared";
+import { sentenceOf } from "../../parts/sentence";
 
 const DTR_DOWN_MS = 50; // a board's reset line needs some 2 ms
 const BUFFER_BYTES = 65_536; // of the browser, for a page that reads late
@@ -24,7 +25,7 @@ export class SerialLine {
     try {
       await port.open({ baudRate, bufferSize: BUFFER_BYTES });
     } catch (error) {
-      const why = error instanceof Error ? error.message : String(error);
+      const why = sentenceOf(error);
       throw new LinkError(`The port cannot be opened (${why}); close what else has it, or plug the board in again, and connect.`);
     }
     return new SerialLine(port, ear);
