@@ -2,6 +2,7 @@
 
 import { Fault, State } from "./link/schema";
 import { button, el, setText } from "./parts/dom";
+import { drawPictures } from "./parts/pictures";
 import { isDark, switchTheme, themeChanged } from "./parts/theme";
 import type { View } from "./parts/view";
 import type { Session } from "./session";
@@ -54,11 +55,7 @@ export class Shell {
     addEventListener("keydown", (event) => this.pressed(event), { capture: true });
     this.show(this.front);
     this.showState(); // before the first picture: nothing can be enabled yet
-    const draw = (): void => {
-      this.picture();
-      requestAnimationFrame(draw);
-    };
-    requestAnimationFrame(draw);
+    drawPictures(() => this.picture());
   }
 
   /** Adds a view behind the others, as for what only some hosts have. */

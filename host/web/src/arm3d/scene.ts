@@ -11,6 +11,7 @@ import URDFLoader, { type URDFRobot } from "urdf-loader";
 import type { LeaderHand } from "../bench/hand";
 import type { ArmDescription } from "../host";
 import type { Colours } from "../parts/theme";
+import { finished, pause } from "./graphics";
 
 const AT_STOP_RAD = 0.03;
 const RING_RADIUS = 0.034;
@@ -33,12 +34,9 @@ export type Pose = {
 };
 
 export class ArmScene {
-  private readonly renderer: WebGLRenderer;
   private readonly scene = new Scene();
   private readonly camera = new PerspectiveCamera(FIELD_DEG, 1, 0.01, 10);
   private readonly controls: OrbitControls;
-  private readonly follower: URDFRobot;
-  private readonly ghost: URDFRobot;
   private readonly rings: Mesh<TorusGeometry, MeshBasicMaterial>[] = [];
   private readonly arcs: Line<BufferGeometry, LineBasicMaterial>[] = [];
   private readonly grid = new GridHelper(0.8, 16);
@@ -46,15 +44,32 @@ export class ArmScene {
   private moved = true;
   private last = "";
 
-  /** Draws on a canvas; throws where the browser has no WebGL. */
-  constructor(canvas: HTMLCanvasElement, private readonly arm: ArmDescription) {
-    this.renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true });
+  /**
+   * Makes it in steps, between which the page does all else: while an arm follows, its page must not fall silent. Fails where
+   * the browser has no WebGL.
+   */
+  static async on(canvas: HTMLCanvasElement, arm: ArmDescription): Promise<ArmScene> {
+    const context = contextOf(canvas);
+    if (!context) throw new Error("This browser cannot draw in three dimensions; turn WebGL on. All other views work without it.");
+    await pause();
+    const renderer = new WebGLRenderer({ canvas, context });
+    renderer.debug.checkShaderErrors = false; // to ask is to wait
+    await pause();
+    const follower = robot(arm);
+    await pause();
+    const ghost = robot(arm);
+    await pause();
+    return new ArmScene(renderer, arm, follower, ghost);
+  }
+
+  private constructor(
+    private readonly renderer: WebGLRenderer, private readonly arm: ArmDescription,
+    private readonly follower: URDFRobot, private readonly ghost: URDFRobot,
+  ) {
     this.camera.up.set(0, 0, 1);
-    this.controls = new OrbitControls(this.camera, canvas);
+    this.controls = new OrbitControls(this.camera, renderer.domElement);
     this.controls.target.copy(CENTRE);
     this.controls.addEventListener("change", () => { this.moved = true; });
-    this.follower = this.robot();
-    this.ghost = this.robot();
     this.grid.rotation.x = Math.PI / 2;
     const sun = new DirectionalLight(0xffffff, 2.2);
     sun.position.set(0.6, -0.8, 1.4);
@@ -63,12 +78,16 @@ export class ArmScene {
     this.look("corner");
   }
 
-  private robot(): URDFRobot {
-    const loader = new URDFLoader();
-    loader.parseCollision = false;
-    const robot = loader.parse(this.arm.urdf);
-    for (const joint of Object.values(robot.joints)) joint.ignoreLimits = true;
-    return robot;
+  /**
+   * Lets the graphics processor compile and draw all once, which takes one made of software seconds. Who shows the canvas
+   * before waits for it, and so does the page.
+   */
+  async warm(): Promise<void> {
+    const context = this.renderer.getContext() as WebGL2RenderingContext;
+    await this.renderer.compileAsync(this.scene, this.camera);
+    await finished(context);
+    this.renderer.render(this.scene, this.camera);
+    await finished(context);
   }
 
   /** A ring about a joint for its voltage, and an arc in the link before for where its stops are. */
@@ -91,6 +110,11 @@ export class ArmScene {
     still.add(arc);
     joint.parent?.add(still);
     this.arcs.push(arc);
+  }
+
+  /** Whether the browser has taken the graphics away. */
+  get lost(): boolean {
+    return this.renderer.getContext().isContextLost();
   }
 
   paint(shades: Colours): void {
@@ -197,4 +221,21 @@ function paintLinks(robot: Object3D, material: MeshStandardMaterial, others: rea
   robot.traverse((part) => {
     if (part instanceof Mesh && !others.includes(part)) part.material = material;
   });
+}
+
+/** What draws on a canvas, null where the browser lacks or forbids it. */
+function contextOf(canvas: HTMLCanvasElement): WebGL2RenderingContext | null {
+  try {
+    return canvas.getContext("webgl2", { antialias: true, alpha: true });
+  } catch {
+    return null;
+  }
+}
+
+function robot(arm: ArmDescription): URDFRobot {
+  const loader = new URDFLoader();
+  loader.parseCollision = false;
+  const made = loader.parse(arm.urdf);
+  for (const joint of Object.values(made.joints)) joint.ignoreLimits = true;
+  return made;
 }

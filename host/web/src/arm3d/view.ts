@@ -1,6 +1,7 @@
 // The arm in three dimensions. What draws it is loaded when somebody looks for the first time.
 
 import { button, el, setText } from "../parts/dom";
+import { sentenceOf } from "../parts/sentence";
 import { colours, themeChanged } from "../parts/theme";
 import type { LeaderHand } from "../bench/hand";
 import type { View } from "../parts/view";
@@ -16,7 +17,7 @@ const DEFAULT_SUPPLY_V = TABLE.named("supply_mv").initial / 1000;
 export class ArmView implements View {
   readonly name = "Arm";
   readonly element: HTMLElement;
-  private readonly canvas = el("canvas", { attrs: { role: "img", "aria-label": "The arm: follower solid, leader as a ghost" } });
+  private readonly canvas = el("canvas", { attrs: { role: "img", "aria-label": "The arm: follower solid, leader as a ghost" }, hidden: true });
   private readonly words = el("p", { class: "quiet" }, "Loading the arm.");
   private scene: ArmScene | null = null;
   private hand: LeaderHand | null = null;
@@ -40,21 +41,31 @@ export class ArmView implements View {
   enter(): void {
     if (this.scene || this.loading) return;
     this.loading = true;
-    void this.session.attempt(() => this.load()).then(() => { this.loading = false; });
+    this.load().catch((error: unknown) => setText(this.words, sentenceOf(error))).finally(() => { this.loading = false; });
   }
 
   private async load(): Promise<void> {
+    setText(this.words, "Loading the arm.");
     const [{ ArmScene }, arm] = await Promise.all([import("./scene"), this.host.arm()]);
-    try {
-      this.scene = new ArmScene(this.canvas, arm);
-    } catch {
-      setText(this.words, "This browser cannot draw in three dimensions; turn WebGL on.");
-      return;
-    }
-    this.scene.paint(colours());
-    this.scene.leadBy(this.hand);
+    const scene = this.scene = await ArmScene.on(this.canvas, arm);
+    scene.paint(colours());
+    scene.leadBy(this.hand);
+    this.canvas.addEventListener("webglcontextlost", () => {
+      this.canvas.hidden = true;
+      setText(this.words, "The browser has taken the graphics of this view away; it gives them back, or reload the page. All other views go on.");
+    });
+    this.canvas.addEventListener("webglcontextrestored", () => void this.show(scene, arm.name));
+    await this.show(scene, arm.name);
+  }
+
+  /** Shows the canvas once the graphics processor has drawn what it needs long for. */
+  private async show(scene: ArmScene, name: string): Promise<void> {
     this.resize();
-    setText(this.words, `${arm.name}: solid is the follower, the ghost the leader; rings grow with the voltage, arcs end at the stops, red when one is reached.${this.hand ? " Drag a link to lead." : ""}`);
+    await scene.warm();
+    if (scene.lost) return;
+    this.canvas.hidden = false;
+    this.resize();
+    setText(this.words, `${name}: solid is the follower, the ghost the leader; rings grow with the voltage, arcs end at the stops, red when one is reached.${this.hand ? " Drag a link to lead." : ""}`);
   }
 
   private resize(): void {
@@ -64,7 +75,7 @@ export class ArmView implements View {
 
   frame(): void {
     const { samples, parameters } = this.session;
-    if (!this.scene || !samples.end) return;
+    if (!this.scene || this.canvas.hidden || !samples.end) return;
     const supply = parameters ? parameters[TABLE.named("supply_mv").index]! / 1000 : DEFAULT_SUPPLY_V;
     this.scene.draw({
       leader: samples.newest("leader"), follower: samples.newest("follower"),
