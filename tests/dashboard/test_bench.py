@@ -9,11 +9,13 @@ import numpy as np
 import pytest
 
 from greywhale.base.errors import UserError
+from greywhale.dashboard.answers import Answers
 from greywhale.dashboard.bench import BenchControls
 from greywhale.dashboard.folder import Folder
 from greywhale.files.leader import save_leader
 from greywhale.files.trajectory import Trajectory
 from greywhale_sim.lockstep import LockStepBench
+from tests.dashboard.shared import Shared, jobs_of
 
 
 @pytest.fixture
@@ -98,3 +100,26 @@ def test_what_is_no_wish_changes_nothing(bench: LockStepBench, controls: BenchCo
     with pytest.raises(UserError):
         controls.change(wish)
     assert controls.controls() == before
+
+
+def test_while_a_page_drives_no_other_changes_the_bench(
+    shared: Shared, bench: LockStepBench, controls: BenchControls, tmp_path: Path
+) -> None:
+    folder = Folder(tmp_path)
+    answers = Answers(shared.relay, folder, "default", jobs_of(shared.relay, folder), controls)
+    driver, watcher = shared.page().client, shared.page().client
+    answers.change_bench({"load": 0.1}, watcher.id)  # nobody drives yet
+    shared.relay.drive(driver)
+    before = controls.controls()
+    wishes: list[dict[str, Any]] = [
+        *({"fault": "pot-open:follower1"}, {"fault": None}, {"leader": [0.5] * 4}, {"motion": "hold"}),
+        *({"power": False}, {"estop": False}, {"clutch": True}, {"supply": 9}, {"load": 0.2}, {"speed": 0.5}),
+    ]
+    for wish in wishes:
+        for page in (watcher.id, "", "no page"):
+            with pytest.raises(UserError, match="another page drives this arm"):
+                answers.change_bench(dict(wish), page)
+    assert controls.controls() == before
+    assert answers.change_bench({"load": 0.2}, driver.id)["load"]["value"] == 0.2
+    shared.relay.release(driver)
+    assert answers.change_bench({"load": 0}, watcher.id)["load"]["value"] == 0

@@ -130,6 +130,13 @@ class Answers:
             raise BadUsage("board must be a number, and file the name of an arm or a model.")
         return predict(self._arm(file), ParameterTable(tuple(raw), schema.Board.of(board)))
 
+    def change_bench(self, wish: dict[str, Any], page: str) -> dict[str, Any]:
+        """What there is to change on the bench after a page's wish, as `BenchControls.change` says."""
+        if self.bench is None:
+            raise BadUsage("no bench belongs to this dashboard; start it with --sim.")
+        self.relay.require_bench(page)
+        return self.bench.change(wish)
+
     def _arm(self, file: str | None) -> ArmParameters:
         if file is None:
             return load_arm(self.arm)

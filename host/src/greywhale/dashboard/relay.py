@@ -152,6 +152,12 @@ class Relay:
             if self._stops != wish.stops:
                 raise UserError("a stop came while the verb began; start the verb again.")
 
+    def require_bench(self, page: str) -> None:
+        """Refuse what changes a bench while another page drives its arm."""
+        with self._lock:
+            if self._driver is not None and self._driver.id != page:
+                raise UserError("another page drives this arm, and with it the bench; let go there first.")
+
     def join(self, client: Client, wish: Wish | None = None) -> None:
         """A client begins; a verb with the `wish` for which it runs."""
         with self._lock:

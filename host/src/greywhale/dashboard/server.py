@@ -58,7 +58,7 @@ def application(answers: Answers, page: Path, token: str, port: int) -> Guard:
     if (bench := answers.bench) is not None:
         routes += [
             Route("/bench", _told(lambda asked: bench.controls()), methods=["GET"]),
-            Route("/bench", _told(bench.change), methods=["POST"]),
+            Route("/bench", _told(lambda asked: answers.change_bench(asked, asked.pop(PAGE_ID, ""))), methods=["POST"]),
         ]
     private = {route.path for route in routes if isinstance(route, Route | WebSocketRoute)}
     first = {path.split("/")[1] for path in private}
