@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import pytest
-from playwright.sync_api import Page, expect
+from playwright.sync_api import BrowserContext, Page, expect
 
 from greywhale.protocol.schema import Sample
+from tests.page import stage as stages
 from tests.page.stage import Stage, await_state
 
 pytestmark = pytest.mark.slow
@@ -65,3 +66,44 @@ def test_a_drawn_motion_leads_the_arm(page: Page, stage: Stage) -> None:
     end = (high - 0.2 * (high - low)) / Sample.LSB["leader"]
     stage.wait_for(lambda: abs(stage.newest().leader[2] - end) < 100)
     expect(page.get_by_role("button", name="Play", exact=True)).to_be_visible()
+
+
+def test_a_page_that_only_watches_leaves_the_bench_alone_and_says_why(
+    context: BrowserContext, page: Page, stage: Stage
+) -> None:
+    before = stage.command("controls")
+    with stages.visit(context, stage) as watcher:
+        why = "Another page drives this arm; let go there first."
+        watcher.page.get_by_role("button", name="Bench").click()
+        for name in ("Break", "Mend all", "Hold still", "Cut the power", "Press emergency stop"):
+            expect(watcher.page.get_by_role("button", name=name, exact=True)).to_be_disabled()
+        expect(watcher.page.get_by_label("Supply, V")).to_be_disabled()
+        expect(watcher.page.locator(".in-the-way .reason")).to_have_text(why)
+        watcher.page.locator("button.enable").hover(force=True)
+        expect(watcher.page.locator("button.enable")).to_have_attribute("title", why)
+        page.get_by_role("button", name="Let go").click()
+        expect(watcher.page.get_by_role("button", name="Break", exact=True)).to_be_enabled()
+        expect(watcher.page.locator("fieldset")).to_have_attribute("title", "")
+        page.get_by_role("button", name="Take control").click()
+        expect(watcher.page.get_by_role("button", name="Break", exact=True)).to_be_disabled()
+    assert stage.command("controls") == before
+
+
+def test_a_fault_its_remedy_and_its_end_stand_in_every_view(page: Page, stage: Stage) -> None:
+    page.get_by_role("button", name="Enable").click()
+    await_state(page, "following")
+    stage.command("pot follower 1 open")
+    await_state(page, "fault")
+    stage.command("pot follower 1 connected")
+    enable = page.locator("button.enable")
+    for view in page.locator("nav button").all():
+        view.click()
+        fault = page.get_by_role("alert").filter(has_text="follower potentiometer 1")
+        expect(fault).to_contain_text("wiper")
+        expect(fault.get_by_role("button", name="Clear fault")).to_be_enabled()
+        expect(enable).to_have_attribute("title", "A fault keeps the motors off; do what it says, and clear it.")
+    stage.live(1.0)
+    page.get_by_role("button", name="Clear fault").click()
+    expect(enable).to_be_enabled()
+    expect(enable).to_have_attribute("title", "Starts the motors through the soft start")
+    expect(page.get_by_role("button", name="Clear fault")).to_be_hidden()

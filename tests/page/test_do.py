@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from playwright.sync_api import Locator, Page, expect
+from playwright.sync_api import BrowserContext, Locator, Page, expect
 
 from greywhale.board.calibrate.words import sweep_asked
 from greywhale.commission.measures import NAMES, Measures
@@ -18,6 +18,7 @@ from greywhale.dashboard.job import Facts
 from greywhale.dashboard.jobs import Listed
 from greywhale.files.log import read_log
 from greywhale.protocol.schema import DEFAULTS, PARAMETER_BY_NAME
+from tests.page import stage as stages
 from tests.page.barriers import DARK_AND_NARROW, LIGHT_AND_WIDE, require_no_barrier
 from tests.page.stage import PATIENCE_MS, Stage
 from tools.support.hands import Hands
@@ -201,6 +202,27 @@ def test_a_commissioning_shows_what_was_predicted_beside_what_was_measured(
     expect(rows.nth(0).locator("td").first).to_have_text("32.0 / 34.5")
     table.get_by_label("Measure").select_option("unrest")
     expect(rows.nth(0).locator("td").first).to_have_text("1.02 / 1.19")
+
+
+def test_a_verb_that_cannot_start_says_why_as_long_as_that_holds(
+    context: BrowserContext, desk: Page, stage: Stage
+) -> None:
+    with stages.visit(context, stage) as watcher:
+        watcher.page.get_by_role("button", name="Do", exact=True).click()
+        reason = watcher.page.locator(".verb-form .reason")
+        for verb, needs in (("record", True), ("evaluate", False), ("flash", True)):
+            watcher.page.get_by_role("button", name=verb, exact=True).click()
+            start = watcher.page.get_by_role("button", name=f"Start {verb}")
+            expect(start).to_be_disabled() if needs else expect(start).to_be_enabled()
+            expect(reason).to_have_text("Another page drives this arm; let go there first." if needs else "")
+        desk.get_by_role("button", name="Let go").click()
+        expect(reason).to_contain_text("choose `Take control` first")
+        watcher.page.get_by_role("button", name="Take control").click()
+        expect(start).to_be_enabled()
+        expect(reason).to_be_hidden()
+        watcher.page.get_by_role("button", name="Let go").click()
+        desk.get_by_role("button", name="Take control").click()
+        expect(reason).to_be_visible()
 
 
 def test_nothing_bars_a_person(shared_page: Page) -> None:

@@ -70,6 +70,8 @@ export type Verb = {
   readonly verb: string;
   readonly help: string;
   readonly board: boolean;
+  /** Whether it needs the port itself, with or without a board at it. */
+  readonly takes_port: boolean;
   readonly arguments: readonly Argument[];
 };
 

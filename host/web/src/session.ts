@@ -5,7 +5,7 @@ import { LinkClient } from "./link/client";
 import { LinkError, RefusedError } from "./link/declared";
 import { FrameDecoder } from "./link/frames";
 import {
-  ClearFaultRequest, ClutchRequest, EnableRequest, HelloReply, HelloRequest, LeadPointRequest, LeadReply, LeadRequest, NackCode,
+  ClearFaultRequest, ClutchRequest, EnableRequest, Fault, HelloReply, HelloRequest, LeadPointRequest, LeadReply, LeadRequest, NackCode,
   ParamApplyRequest, ParamGetRequest, ParamSaveRequest, ParamSetRequest, Sample, SaveState, SCHEMA_HASH, State, StatusReply, StatusRequest, StopRequest, TABLE, TelemetryRequest,
 } from "./link/schema";
 import { sentenceOf } from "./parts/sentence";
@@ -138,13 +138,38 @@ export class Session {
     this.board.drive();
   }
 
-  /** Fails unless this page may change what the board does. */
+  /** Why this page leaves a simulated bench alone, in a sentence: another one drives its arm. Else empty. */
+  get whyNotBench(): string {
+    return this.link.open && !this.driver.free ? this.whyNotDrive : "";
+  }
+
+  /** Why this page may not change what the board does, in a sentence; empty where it may. */
+  get whyNotDrive(): string {
+    if (this.driver.you) return "";
+    return this.driver.free
+      ? "This page only watches; choose `Take control` first."
+      : "Another page drives this arm; let go there first.";
+  }
+
+  /** The same, and what of the host uses the board in the place of any page. */
+  get whyNotChange(): string {
+    const { verb } = this.driver;
+    return verb === null ? this.whyNotDrive : `\`greywhale ${verb}\` uses the board; stop it first, or wait for its end.`;
+  }
+
+  /** Why this page cannot enable the motors now, in a sentence; empty where it can. */
+  get whyNotEnable(): string {
+    if (!this.link.open) return "No board is there.";
+    if (this.faulty) return "A fault keeps the motors off; do what it says, and clear it.";
+    return this.whyNotChange || (this.motorsOn ? "The motors are on." : "");
+  }
+
+  get faulty(): boolean {
+    return this.link.open && this.status !== null && this.status.fault !== Fault.is.none;
+  }
+
   private mustDrive(): void {
-    if (!this.driver.you) {
-      throw new LinkError(this.driver.free
-        ? "This page only watches; choose `Take control` first."
-        : "Another page drives this arm; let go there first.");
-    }
+    if (this.whyNotDrive) throw new LinkError(this.whyNotDrive);
   }
 
   release(): void {

@@ -1,7 +1,9 @@
 // The frame around all views: state, enable and stop always in sight, the views by tabs, notices, the space bar.
 
-import { Fault, State } from "./link/schema";
+import { InTheWay } from "./in_the_way";
+import { State } from "./link/schema";
 import { button, el, setText } from "./parts/dom";
+import { grey } from "./parts/grey";
 import { drawPictures } from "./parts/pictures";
 import { isDark, switchTheme, themeChanged } from "./parts/theme";
 import type { View } from "./parts/view";
@@ -13,9 +15,8 @@ export class Shell {
   private readonly stop = button("Stop", () => this.stopNow(), {
     class: "stop", title: "Motors off (space bar)", attrs: { "aria-keyshortcuts": "Space" },
   });
-  private readonly enable = button("Enable", () => void this.session.attempt(() => this.session.enable()), {
-    class: "enable", title: "Starts the motors through the soft start",
-  });
+  private readonly enable = button("Enable", () => void this.session.attempt(() => this.session.enable()), { class: "enable" });
+  private readonly let = el("span");
   private readonly control = button("", () => this.takeOrLetGo(), { class: "control" });
   private readonly state = el("span", { class: "pill", attrs: { role: "status" } });
   private readonly place = el("span", { class: "place" });
@@ -34,6 +35,7 @@ export class Shell {
     private readonly session: Session, views: readonly View[], remedy: readonly (Node | string)[], front: View = views[0]!,
   ) {
     this.front = front;
+    this.control.append(this.let, el("span", { class: "wide" }, " of the arm"));
     for (const view of views) this.add(view);
     this.notice.append(this.noticeText, button("×", () => { this.notice.hidden = true; }, {
       attrs: { "aria-label": "Close this notice" },
@@ -49,7 +51,7 @@ export class Shell {
         this.state,
         el("div", { class: "motors" }, this.control, this.enable, this.stop, theme)),
       el("div", { class: "bar" }, this.nav, this.offers),
-      this.notice, this.empty, this.main);
+      new InTheWay(session, this.enable, this.control).element, this.notice, this.empty, this.main);
     session.changed.on(() => this.refresh());
     session.noticed.on(() => this.showNotice());
     addEventListener("keydown", (event) => this.pressed(event), { capture: true });
@@ -99,20 +101,18 @@ export class Shell {
     const state = session.link.open ? State.of(session.state).name : "no board";
     setText(this.state, state.replace("_", " "));
     this.state.dataset["state"] = state;
-    const faulty = session.status !== null && session.status.fault !== Fault.is.none;
     document.body.dataset["motors"] = session.motorsOn ? "on" : "off";
-    this.enable.disabled = !session.link.open || session.motorsOn || faulty || !session.driver.you
-      || session.driver.verb !== null;
+    grey(this.enable, session.whyNotEnable, "Starts the motors through the soft start");
   }
 
   private refresh(): void {
-    const { link, driver, samples } = this.session;
+    const { link, driver, samples, whyNotChange } = this.session;
     setText(this.place, !link.open ? "" : driver.verb ? `${link.port}, used by ${driver.verb}` : link.port);
     this.empty.hidden = link.open || samples.end > 0 || this.front.withoutBoard === true;
     setText(this.emptyText, link.sentence || "Looking for a board.");
-    setText(this.control, driver.you ? "Let go" : "Take control");
-    this.control.title = driver.you ? "Let another page drive; the motors go off" : "Drive the arm from this page";
-    this.control.disabled = !driver.you && !driver.free;
+    setText(this.let, driver.you ? "Let go" : "Take control");
+    grey(this.control, driver.you || driver.free ? "" : whyNotChange,
+      driver.you ? "Let another page drive; the motors go off" : "Drive the arm from this page");
   }
 
   private takeOrLetGo(): void {

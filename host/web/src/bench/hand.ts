@@ -22,8 +22,13 @@ export class LeaderHand {
     return this.held ? this.wanted : this.session.samples.newest("leader");
   }
 
-  /** Brings one joint to an angle in rad. */
+  /** Brings one joint to an angle in rad; who may not is told why. */
   take(joint: number, angle: number): void {
+    const { whyNotBench } = this.session;
+    if (whyNotBench) {
+      this.session.tell(whyNotBench);
+      return;
+    }
     if (!this.held) this.wanted.splice(0, JOINTS, ...this.session.samples.newest("leader"));
     this.held = true;
     this.wanted[joint] = angle;

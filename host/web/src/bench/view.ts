@@ -2,6 +2,7 @@
 
 import { upperFirst } from "../link/refusal";
 import { button, el, select, setText } from "../parts/dom";
+import { REASON } from "../in_the_way";
 import type { View } from "../parts/view";
 import { SIZES, type Bench, type BenchControls, type BenchWish, type Host, type Range, type Size } from "../host";
 import type { Session } from "../session";
@@ -16,7 +17,8 @@ const TITLES: Readonly<Record<Size, readonly [title: string, unit: string]>> = {
 
 export class BenchView implements View {
   readonly name = "Bench";
-  readonly element = el("div", { class: "editor" });
+  private readonly cards = el("div", { class: "editor" });
+  readonly element = el("fieldset", { attrs: { "aria-describedby": REASON } }, this.cards);
   private lead: Lead | null = null;
   private drawn: DrawnMotion | null = null;
   private readonly recorded = el("select", { attrs: { "aria-label": "Recorded motion" } });
@@ -26,7 +28,16 @@ export class BenchView implements View {
   constructor(
     private readonly session: Session, private readonly bench: Bench, private readonly hand: LeaderHand,
     private readonly host: Pick<Host, "state"> | null,
-  ) {}
+  ) {
+    session.changed.on(() => this.show());
+  }
+
+  /** Who only watches leaves the bench alone while another page drives. */
+  private show(): void {
+    const { whyNotBench } = this.session;
+    this.element.disabled = whyNotBench !== "";
+    this.element.title = whyNotBench;
+  }
 
   enter(): void {
     void this.session.attempt(async () => {
@@ -43,7 +54,7 @@ export class BenchView implements View {
   private build(controls: BenchControls): void {
     this.lead = new Lead(this.hand, this.session.samples, controls.leader);
     this.drawn = new DrawnMotion(this.hand, controls.leader);
-    this.element.replaceChildren(el("div", { class: "side" }, this.lead.element, this.drawn.element),
+    this.cards.replaceChildren(el("div", { class: "side" }, this.lead.element, this.drawn.element),
       el("div", { class: "side" }, this.motions(), this.faults(controls), this.sizes(controls)));
   }
 

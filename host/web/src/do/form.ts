@@ -1,6 +1,7 @@
 // A form for a verb, made from its arguments as the host names them.
 
 import { el } from "../parts/dom";
+import { grey, reasonFor, showReason } from "../parts/grey";
 import type { Argument, NamedFile, Verb } from "../host";
 
 type Field = { readonly argument: Argument; readonly input: HTMLInputElement | HTMLSelectElement };
@@ -8,15 +9,19 @@ type Field = { readonly argument: Argument; readonly input: HTMLInputElement | H
 export class VerbForm {
   readonly element = el("form", { class: "verb-form" });
   private readonly fields: readonly Field[];
+  private readonly start: HTMLButtonElement;
+  private readonly reason = el("p", { class: "reason", hidden: true, attrs: { role: "status" } });
 
   constructor(verb: Verb, files: readonly NamedFile[], start: (given: Record<string, unknown>) => void) {
+    this.start = el("button", { type: "submit", class: "primary" }, `Start ${verb.verb}`);
+    reasonFor(this.reason, this.start);
     const names = el("datalist", { attrs: { id: "host-files" } }, ...files.map(({ name }) => el("option", { value: name })));
     this.fields = verb.arguments.map((argument) => ({ argument, input: field(argument) }));
     const rows = this.fields.map(({ argument, input }) => ({ argument, row: row(argument, input) }));
     const needed = rows.filter(({ argument }) => argument.required);
     const others = rows.filter(({ argument }) => !argument.required);
     this.element.append(el("p", {}, verb.help), names, ...needed.map(({ row }) => row),
-      el("button", { type: "submit", class: "primary" }, `Start ${verb.verb}`));
+      this.start, this.reason);
     if (others.length) {
       const more = el("details", { attrs: needed.length ? {} : { open: "" } }, el("summary", {}, needed.length ? "More" : "Options"), ...others.map(({ row }) => row));
       this.element.append(more);
@@ -25,6 +30,12 @@ export class VerbForm {
       event.preventDefault();
       start(this.given());
     });
+  }
+
+  /** Takes no start as long as there is a reason. */
+  show(reason: string): void {
+    grey(this.start, reason, "");
+    showReason(this.reason, reason);
   }
 
   /** What a person gave; what was left as it is, is left out. */

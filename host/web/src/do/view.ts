@@ -16,6 +16,7 @@ export class DoView implements View {
   private readonly form = el("div");
   private readonly jobs = el("div", { class: "side jobs" });
   private readonly none = el("p", { class: "quiet" }, "Nothing was started yet.");
+  private showReason = (): void => undefined; // of the verb whose form is there
   private readonly cards = new Map<string, JobCard>();
 
   constructor(private readonly session: Session, private readonly host: Host) {
@@ -23,6 +24,7 @@ export class DoView implements View {
     this.element = el("div", { class: "editor" },
       el("section", { class: "card" }, el("h2", {}, "What shall greywhale do?"), this.reading, this.list, this.form),
       this.jobs);
+    session.changed.on(() => this.showReason());
     host.jobs.listen((job) => this.heard(job));
   }
 
@@ -47,6 +49,16 @@ export class DoView implements View {
     const form = new VerbForm(verb, files, (given) =>
       void this.session.attempt(async () => void await this.host.jobs.start(verb.verb, given)));
     this.form.replaceChildren(form.element);
+    this.showReason = () => form.show(this.whyNot(verb));
+    this.showReason();
+  }
+
+  /** Why a verb cannot be started from this page now, in a sentence; empty where it can. */
+  private whyNot({ board, takes_port }: Verb): string {
+    const { link, whyNotChange } = this.session;
+    if (!board) return "";
+    if (!link.open && !takes_port) return link.sentence || "No board is there yet.";
+    return whyNotChange;
   }
 
   private heard(job: Job): void {

@@ -1,7 +1,7 @@
-// The board's state, its fault with the remedy, and the counters of firmware and link.
+// The board's state, and the counters of firmware and link.
 
-import { Clutch, ClutchAction, Fault, State, StopReason, SaveState, TABLE } from "../link/schema";
-import { faultSentence, upperFirst } from "../link/refusal";
+import { Clutch, ClutchAction, State, StopReason, SaveState, TABLE } from "../link/schema";
+import { upperFirst } from "../link/refusal";
 import { button, el, setText } from "../parts/dom";
 import type { Session } from "../session";
 
@@ -10,8 +10,6 @@ const SUPPLY_MV = TABLE.named("supply_mv").index;
 export class StatePanel {
   readonly element: HTMLElement;
   private readonly sentence = el("p", { class: "state-text" });
-  private readonly fault = el("div", { class: "fault", hidden: true, attrs: { role: "alert" } });
-  private readonly faultText = el("p");
   private readonly clutchText = el("p", { class: "state-text" });
   private readonly clutch = button("", () => this.use(this.engaged() ? ClutchAction.is.disengage : ClutchAction.is.engage));
   private readonly reset = button("Reset", () => this.use(ClutchAction.is.reset), {
@@ -20,7 +18,6 @@ export class StatePanel {
   private readonly rows = new Map<string, HTMLElement>();
 
   constructor(private readonly session: Session) {
-    this.fault.append(this.faultText, button("Clear fault", () => void session.attempt(() => session.clearFault())));
     const names = [
       "last stop", "supply, as set", "ticks", "late ticks", "longest tick", "samples lost", "samples not sent", "frames damaged", "bytes lost",
       "no rule", "stored sets",
@@ -31,7 +28,7 @@ export class StatePanel {
       this.rows.set(name, value);
       list.append(el("dt", {}, name), value);
     }
-    this.element = el("section", { class: "card" }, el("h2", {}, "Board"), this.sentence, this.fault, list,
+    this.element = el("section", { class: "card" }, el("h2", {}, "Board"), this.sentence, list,
       el("h2", {}, "Clutch"), this.clutchText, el("div", { class: "row" }, this.clutch, this.reset));
     session.changed.on(() => this.show());
     this.show();
@@ -59,12 +56,9 @@ export class StatePanel {
     const { status, link, samples, damaged, parameters } = this.session;
     if (!status || !link.open) {
       setText(this.sentence, link.sentence || "No board is there yet.");
-      this.fault.hidden = true;
       return;
     }
     setText(this.sentence, `${upperFirst(State.of(status.state).description)}.`);
-    this.fault.hidden = status.fault === Fault.is.none;
-    if (status.fault !== Fault.is.none) setText(this.faultText, faultSentence(status));
     const facts: Record<string, string> = {
       "last stop": StopReason.of(status.stop_reason).description,
       "supply, as set": parameters ? `${parameters[SUPPLY_MV]! / 1000} V` : "–", // no pin of the board measures it

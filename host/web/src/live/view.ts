@@ -112,7 +112,7 @@ export class LiveView implements View {
     this.charts.draw();
     this.showValues();
     this.measures.refresh();
-    setText(this.resolution, this.charts.exact ? "every sample" : "least and greatest of each column");
+    setText(this.resolution, this.charts.exact ? "every sample" : "each column from its least to its greatest sample");
   }
 
   private showValues(): void {
