@@ -39,6 +39,7 @@ def test_text_tables_and_files(capsys: Captured, tmp_path: Path) -> None:
         (("--budget", "many"), "Invalid value for '--budget': 'many' is not a valid integer."),
         (("--functions", ","), "no function was chosen; there are sphere,"),
         (("--results", "r.csv", "--out", "r.csv"), "r.csv: this is the results file; write the report elsewhere."),
+        (("--scheduler", "tcp://10.0.0.5:8786"), "tcp://10.0.0.5:8786 is not on this machine, and tcp:// would not"),
         (("--out", "r.txt"), "r.txt: reports end in .csv, .png, .svg, .pdf."),
     ],
 )

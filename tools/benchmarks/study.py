@@ -1,7 +1,7 @@
 """Runs what a benchmark repeats (arms, seeds, methods) as a study, which goes on after a kill.
 
-GREYWHALE_WORKERS says in how many processes, as --workers does for verbs. A wall time among the figures is that of a
-machine of its own only with one worker.
+GREYWHALE_WORKERS says in how many processes, or GREYWHALE_SCHEDULER on which Dask scheduler's workers, as --workers and
+--scheduler do for verbs. A wall time among the figures is that of a machine of its own only with one worker.
 """
 
 from __future__ import annotations
@@ -22,10 +22,11 @@ SOURCES = ("firmware/lib", "host/native", "host/src", "shared", "sim", "tools/be
 
 def repeat(name: str, tasks: Sequence[Task], workers: int = 1) -> dict[str, Any]:
     """Do the tasks; their results by key. Their file is kept until all are done, so that a new run measures anew."""
-    count = int(os.environ.get("GREYWHALE_WORKERS") or workers)
+    chosen, scheduler = os.environ.get("GREYWHALE_WORKERS"), os.environ.get("GREYWHALE_SCHEDULER") or None
+    count = int(chosen) if chosen else None if scheduler else workers
     FOLDER.mkdir(parents=True, exist_ok=True)
     path = FOLDER / f"{name}-{stamps.digest(stamps.files_below(*SOURCES))[:16]}.study"
-    found = run_study(tasks, choose_workers(count), path, _say, what=name)
+    found = run_study(tasks, choose_workers(count, scheduler), path, _say, what=name)
     path.unlink()
     return found
 

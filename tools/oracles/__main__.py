@@ -22,6 +22,7 @@ DEBIAN = (
     "qemu-system-arm",
     "g++-aarch64-linux-gnu",  # the native code on 64-bit ARM
     "qemu-user",
+    "openssl",  # certificates for a scheduler of studies
 )
 REQUIREMENTS = ROOT / "tools" / "oracles" / "requirements.txt"
 

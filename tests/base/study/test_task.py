@@ -61,10 +61,18 @@ def test_functions_that_no_other_process_finds_are_refused() -> None:
             Task("x", function, 0)
 
 
-@pytest.mark.parametrize("name", ["greywhale", "numpy", "scipy"])
+@pytest.mark.parametrize("name", ["greywhale", "Python", "numpy", "scipy"])
 def test_a_worker_with_another_version_refuses(name: str) -> None:
     *what, _, wanted = pickle.loads(Task("x", jobs.draw, 0, {"count": 3}).packed())
     assert do(pickle.dumps((*what, "another process", wanted)))
     sentence = rf"^a worker has {name} \S+, but this study needs 9\.9; install the same there\."
     with pytest.raises(UserError, match=sentence):
         do(pickle.dumps((*what, "another process", wanted | {name: "9.9"})))
+
+
+def test_a_worker_that_rounds_otherwise_refuses() -> None:
+    *what, _, wanted = pickle.loads(Task("x", jobs.draw, 0, {"count": 3}).packed())
+    with pytest.raises(
+        UserError, match="^a worker's processor or C library rounds otherwise than this machine's; start"
+    ):
+        do(pickle.dumps((*what, "another process", wanted | {"rounding": "0"})))

@@ -9,7 +9,7 @@ import click
 
 from greywhale.base.errors import BadUsage
 from greywhale.base.study import choose_workers
-from greywhale.cli.output import FILE, json_option, option, overwrite_option, progress, show, workers_option
+from greywhale.cli.output import FILE, json_option, option, overwrite_option, progress, show, workers_options
 from greywhale.files.outputs import require_new
 from greywhale.optimise.comparison import Plan, compare
 from greywhale.optimise.comparison_report import ComparisonFacts, as_dict, check_format, text, write_report
@@ -42,7 +42,7 @@ class Answer(ComparisonFacts):
 @option("--seeds", "runs", type=int, default=25, help="Runs of every method on every function.")
 @option("--pack", type=int, help="Pack of every method; without it, each method's own.")
 @option("--seed", type=int, default=0, help="Where all random numbers start.")
-@workers_option("--jobs")
+@workers_options("--jobs")
 @option("--results", type=FILE, help="Keep here what is done; the same command goes on from it after Ctrl-C or a kill.")
 @option(
     "--out",
@@ -58,6 +58,7 @@ def command(
     methods: str | None,
     settings: str,
     workers: int | None,
+    scheduler: str | None,
     results: Path | None,
     out: tuple[Path, ...],
     overwrite: bool,
@@ -68,7 +69,7 @@ def command(
 
     Grey wolf and whale optimisers favour the origin of the coordinates, where most standard functions have their
     minimum. The same functions shifted show what they are worth elsewhere. The result depends on --seed alone, not on
-    how many processes compute it.
+    where and in how many processes it is computed.
     """
     for path in out:
         check_format(path)
@@ -82,10 +83,10 @@ def command(
         **sizes,
     )
     plan.check()
-    if workers is None and plan.evaluations < SMALL:
+    if workers is None and scheduler is None and plan.evaluations < SMALL:
         workers = 1
     with progress() as report:
-        comparison = compare(plan, choose_workers(workers), report, results)
+        comparison = compare(plan, choose_workers(workers, scheduler), report, results)
     for path in out:
         write_report(path, comparison)
     written = "".join(f"\nWritten: {path}" for path in out)

@@ -56,15 +56,22 @@ def json_option(answer: object) -> Callable[[Command], Command]:
     return add
 
 
-def workers_option(*names: str) -> Callable[[Command], Command]:
-    """--workers, which `base.study.choose_workers` takes; `names` are other names of it."""
-    return option(
+def workers_options(*names: str) -> Callable[[Command], Command]:
+    """--workers and --scheduler, which `base.study.choose_workers` takes; `names` are other names of --workers."""
+    workers = option(
         "--workers",
         *names,
         "workers",
         type=click.IntRange(1, MOST_WORKERS),
         help="Processes; without it, one for every processor. The result is the same.",
     )
+    scheduler = option(
+        "--scheduler",
+        metavar="ADDRESS",
+        help="A Dask scheduler whose workers do it instead, tls://HOST:PORT; needs greywhale[cluster]. The result is "
+        "the same.",
+    )
+    return lambda command: workers(scheduler(command))
 
 
 def show(as_json: bool, result: Mapping[str, object], text: str, hang: int = 0) -> None:

@@ -8,7 +8,7 @@ from typing import Annotated, TypedDict
 
 import click
 
-from greywhale.cli.output import FILE, json_option, option, progress, show, workers_option
+from greywhale.cli.output import FILE, json_option, option, progress, show, workers_options
 from greywhale.files.outputs import require_folder
 from greywhale.reproduce.request import Request
 
@@ -26,9 +26,11 @@ class Answer(TypedDict):
 @option("--quick", is_flag=True, help="Fewer seeds, shorter logs, smaller budgets: a look at everything.")
 @option("--seeds", type=int, help="Runs of everything random; without it 10, with --quick 4.")
 @option("--seed", type=int, default=0, help="The first of them.")
-@workers_option()
+@workers_options()
 @json_option(Answer)
-def command(out: Path, quick: bool, seeds: int | None, seed: int, workers: int | None, as_json: bool) -> None:
+def command(
+    out: Path, quick: bool, seeds: int | None, seed: int, workers: int | None, scheduler: str | None, as_json: bool
+) -> None:
     """Reproduce the paper: every table and figure with our numbers beside the printed ones.
 
     Writes report.html, which needs no other file, report.pdf and report.json into the folder. The experiment is the
@@ -44,7 +46,7 @@ def command(out: Path, quick: bool, seeds: int | None, seed: int, workers: int |
 
     request = Request.of(seed, seeds, quick)
     with progress() as report:
-        results = run(request, out, choose_workers(workers), report)
+        results = run(request, out, choose_workers(workers, scheduler), report)
         # Slow to import, and of no use before all is done.
         from greywhale.reproduce.pages.report import document
         from greywhale.reproduce.render.html import write_html

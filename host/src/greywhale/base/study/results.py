@@ -12,7 +12,8 @@ from typing import Any
 from greywhale.base.closing import Closing
 from greywhale.base.formats.checked_lines import CheckedLines, Kind
 from greywhale.base.study.plain import decode, encode
-from greywhale.base.study.task import Task, versions
+from greywhale.base.study.same import versions
+from greywhale.base.study.task import Task
 
 
 class Results(Closing):

@@ -66,19 +66,29 @@ def _do_all(tasks: Sequence[Task], workers: Workers, kept: Results, report: Call
                     running[future] = task
                     future.add_done_callback(ended.put)
                 future = _wait_for_one(ended)
-                kept.tell(running[future].key, future.result())
+                kept.tell(running[future].key, _result(future, running[future]))
                 del running[future]
                 report()
         except Exception as error:
             for future, task in running.items():
                 if future.done() and not future.cancelled() and future.exception() is None:
                     kept.tell(task.key, future.result())
-            if isinstance(error, (BrokenExecutor, CancelledError)):
+            if isinstance(error, CancelledError):
+                raise UserError("the scheduler of the workers went away; start it and the study again.") from None
+            if isinstance(error, BrokenExecutor):
                 raise _lost(running.values()) from None
             raise
         finally:
             for future in running:
                 future.cancel()
+
+
+def _result(future: Future[str], task: Task) -> str:
+    try:
+        return future.result()
+    except UserError as error:
+        error.add_note(f"(In task {task.key!r}.)")
+        raise
 
 
 def _lost(tasks: Iterable[Task]) -> UserError:

@@ -11,16 +11,14 @@ import traceback
 import uuid
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from importlib.metadata import version
 from typing import Any
 
 from threadpoolctl import threadpool_limits
 
 from greywhale.base.errors import UserError
 from greywhale.base.study.plain import decode, encode
+from greywhale.base.study.same import facts, require_same
 
-# Other versions of these may compute other bits.
-_PACKAGES = ("greywhale", "numpy", "scipy")
 _MODULE = uuid.uuid4().hex
 
 
@@ -51,7 +49,7 @@ class Task:
 
     def packed(self) -> bytes:
         """What a worker gets."""
-        return pickle.dumps((self.key, self.function, self.seed, encode(self.arguments), _process(), versions()))
+        return pickle.dumps((self.key, self.function, self.seed, encode(self.arguments), _process(), facts()))
 
 
 class TaskFailed(Exception):
@@ -66,11 +64,10 @@ def do(packed: bytes) -> str:
         raise UserError(f"a worker cannot import what the study does: {error}; install the same there.") from None
     try:
         if process != _process():  # else `run_study` has set the threads of numpy
-            _require_same_versions(wanted)
             _use_one_thread(function)
+            require_same(wanted)
         return json.dumps(encode(function(seed=seed, **decode(arguments))), separators=(",", ":"), allow_nan=False)
-    except UserError as error:
-        error.add_note(f"(In task {key!r}.)")
+    except UserError:
         raise
     except (Exception, SystemExit) as error:
         # Not the error itself: a process that cannot unpickle an exception loses all its workers.
@@ -90,18 +87,3 @@ def _use_one_thread(function: Callable[..., Any]) -> None:
     A library can be told once it is loaded, which the import of the function's module has done.
     """
     threadpool_limits(limits=1, user_api="blas")
-
-
-@functools.cache
-def versions() -> dict[str, str]:
-    """The versions that a result depends on."""
-    return {name: version(name) for name in _PACKAGES}
-
-
-def _require_same_versions(wanted: dict[str, str]) -> None:
-    found = versions()
-    for name in _PACKAGES:
-        if found[name] != wanted[name]:
-            raise UserError(
-                f"a worker has {name} {found[name]}, but this study needs {wanted[name]}; install the same there."
-            )

@@ -1,7 +1,7 @@
-"""Who does the tasks of a study: any executor, or workers on this machine: this process, or processes of its own.
+"""Who does the tasks of a study: any executor, or this process, or processes of its own, or a scheduler's workers.
 
-The processes are spawned, not forked: a fork would copy the state of other threads (a progress bar's, for example) with
-their locks. They end with this process, however it ends, and at once when a study is left.
+The processes here are spawned, not forked: a fork would copy the state of other threads (a progress bar's, for
+example) with their locks. They end with this process, however it ends, and at once when a study is left.
 """
 
 from __future__ import annotations
@@ -18,7 +18,9 @@ from multiprocessing import resource_tracker
 from typing import Any, ParamSpec, Protocol, TypeVar
 
 from greywhale.base import system
+from greywhale.base.errors import BadUsage
 from greywhale.base.processes import safe_path
+from greywhale.base.study.cluster import ClusterWorkers
 
 P = ParamSpec("P")
 T = TypeVar("T")
@@ -91,9 +93,17 @@ class LocalWorkers:
             theirs.close()
 
 
-def choose_workers(count: int | None = None) -> SerialWorkers | LocalWorkers:
-    """As --workers of a verb says: this process where it is 1, else so many; without it one for every processor."""
-    return SerialWorkers() if count == 1 else LocalWorkers(count)
+def choose_workers(count: int | None = None, scheduler: str | None = None) -> Workers:
+    """As --workers and --scheduler of a verb say: this process where the count is 1, else so many, without it one for
+    every processor; or those of the Dask scheduler at an address. BadUsage where both are given, or no such address.
+    """
+    if scheduler is None:
+        return SerialWorkers() if count == 1 else LocalWorkers(count)
+    if count is not None:
+        raise BadUsage(
+            "--workers is how many processes work here, but --scheduler has workers of its own; leave out one."
+        )
+    return ClusterWorkers(scheduler)
 
 
 class _Pool(ProcessPoolExecutor):
