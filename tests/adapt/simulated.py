@@ -11,9 +11,10 @@ import numpy as np
 from greywhale.adapt.decide import Adaptation
 from greywhale.adapt.stretch import ROWS, Stretch
 from greywhale.arm import ArmParameters
-from greywhale.arm.parameters import with_usual_noise
+from greywhale.arm.parameters import USUAL_TRACK_RAD, with_usual_noise
 from greywhale.arm.plants import plant_row
 from greywhale.base.types import Floats
+from greywhale.files.arm import default_arm
 from greywhale.motion import human_reaches
 from greywhale.protocol.firmware import ANGLE_LSB, JOINTS, TICK_S, pwm_steps
 from greywhale.protocol.table import ParameterTable
@@ -83,8 +84,19 @@ class Work:
         )
         result = loop.run(controllers_of(table)[None], plant_row(arm)[None], substeps=2, every=1)
         volts = result.duties[0] / np.array(pwm_steps(table.board)) * table.supply_v
-        read = result.angles[0] + np.random.default_rng(seed).normal(0.0, READING_RAD, leader.shape)
+        tracks = np.array([pot.track for pot in arm.follower_pots.joint])  # the board takes each for a usual one
+        read = result.angles[0] * USUAL_TRACK_RAD / tracks + np.random.default_rng(seed).normal(
+            0.0, READING_RAD, leader.shape
+        )
         return np.round(leader / ANGLE_LSB) * ANGLE_LSB, np.round(read / ANGLE_LSB) * ANGLE_LSB, volts
+
+
+def with_gain(joint: int, gain: float) -> ArmParameters:
+    """A follower's potentiometer turns so much of the joint's way."""
+    arm = default_arm()
+    pots = list(arm.follower_pots.joint)
+    pots[joint] = pots[joint].model_copy(update={"track": pots[joint].track / gain})
+    return arm.model_copy(update={"follower_pots": arm.follower_pots.model_copy(update={"joint": tuple(pots)})})
 
 
 def work_for(adaptation: Adaptation, work: Work, pieces: int) -> None:

@@ -11,12 +11,13 @@ from greywhale.adapt import decide
 from greywhale.adapt.decide import ENOUGH, Adaptation, Outcome
 from greywhale.adapt.foresee import LEAD, foresee, judged_of
 from greywhale.adapt.gain import Scale
+from greywhale.adapt.live_model import LiveModel
 from greywhale.adapt.propose import Proposal, Task, work_on
 from greywhale.base.types import Controllers
 from greywhale.protocol.table import CONTROLLER_COLUMNS
 from greywhale.simulate.controllers import controllers_of
 from tests.adapt.conftest import TABLE
-from tests.adapt.simulated import Work, work_for
+from tests.adapt.simulated import Work, with_gain, work_for
 from tests.support.arms import make_arm
 
 pytestmark = pytest.mark.slow
@@ -164,6 +165,55 @@ def test_a_fit_that_explains_nothing_excuses_no_set(adaptation: Adaptation, work
     for stretch in work.piece(bad):
         adaptation.take(stretch)
     assert [one.outcome for one in adaptation.trials] == [Outcome.WORSE]
+
+
+def test_nothing_is_tried_while_a_reading_contradicts_its_voltages(adaptation: Adaptation, work: Work) -> None:
+    work.arm = with_gain(1, 0.6)
+    task = task_after_work(adaptation, work)
+    found = work_on(replace(task, budget=0))
+    assert isinstance(found, LiveModel)
+    adaptation.answer(proposal_of(replace(task, live=found), stiffer(1.6)))
+    assert adaptation.wish is None
+    assert "joint 1's potentiometer turns 0.6 times as far" in adaptation.doubt
+
+
+def test_one_fit_that_contradicts_the_readings_may_be_wrong(
+    adaptation: Adaptation, work: Work, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    propose(adaptation, work, 1.2)
+    work_for(adaptation, work, 6)
+    monkeypatch.setattr(decide, "BELIEVED", 100.0)  # whatever it says of what was measured
+    good = adaptation.live
+    turned = [np.log(1.7) if name in ("joint2.inertia", "joint2.damping") else 0.0 for name in good.space.names]
+    bad = replace(good, x=good.x + turned)
+    for live in (bad, good, bad):
+        adaptation.answer(live)
+        assert adaptation.wish is None
+    adaptation.answer(bad)
+    assert adaptation.wish is not None
+    assert adaptation.wish.table == adaptation.kept == TABLE
+
+
+@pytest.mark.parametrize("pieces", [1, 6], ids=["on trial", "kept"])
+def test_a_set_goes_back_when_a_reading_comes_to_contradict_its_voltages(
+    adaptation: Adaptation, work: Work, pieces: int
+) -> None:
+    propose(adaptation, work, 1.2)
+    work_for(adaptation, work, pieces)
+    assert adaptation.running != TABLE
+    work.arm = with_gain(3, 0.6)
+    while adaptation.wish is None:
+        assert work.time_s < 120.0
+        for stretch in work.piece(adaptation.running):
+            adaptation.take(stretch)
+            asked = adaptation.task()
+            if asked is not None and adaptation.wish is None:
+                same = controllers_of(asked.table)
+                adaptation.answer(proposal_of(asked, same, 1.0) if asked.budget else work_on(asked))
+    assert adaptation.wish.table == adaptation.kept == TABLE
+    (tried,) = adaptation.trials
+    assert tried.outcome is Outcome.UNTOLD
+    assert "joint 3's potentiometer turns 0.6 times as far" in tried.why
 
 
 @pytest.mark.parametrize(("predicted", "spread"), [(0.97, 0.0), (0.6, 0.5)])

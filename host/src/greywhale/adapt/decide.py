@@ -7,6 +7,8 @@ It is fed with stretches of work, and says what should be computed in the backgr
         one that does not explain what was measured is not believed
     trying, a gain told from chance: kept, watching with the new set
     trying, worse or restless or nothing told after TRIAL_MOST: a wish for the set from before, watching
+    a joint's reading contradicts its voltages: nothing is tried or kept; when the next fit says so too, the set from
+        the start runs again
 
 Over any half minute the error may exceed what the set from the start would have shown by LIMIT at most: a share of
 that, or of its usual error where the person hardly moves. It is looked at with every stretch, and a set on trial goes
@@ -116,6 +118,7 @@ class Adaptation:
         self.trials: list[TriedSet] = []
         self.searches = 0
         self.doubt = ""  # why the model proposes nothing now
+        self._suspicion = ""  # why the readings of the last fit cannot be true
         self.wish: Wish | None = None
         self._budget, self._seed = budget, seed
         self._own: list[Stretch] = []  # with the kept set
@@ -183,7 +186,8 @@ class Adaptation:
             self._weigh(found)
         elif self.wish is None and self._explains(found):
             self.live, self._age = found, self._age_asked
-            self._reckon_again()
+            if self._trusts(found):
+                self._reckon_again()
 
     def _weigh(self, proposal: Proposal) -> None:
         """Wish for what was found, if that promises enough."""
@@ -193,11 +197,26 @@ class Adaptation:
             return
         self._missed *= REMEMBERED
         self.doubt = self._doubt(proposal)
+        if not self._trusts(proposal.live):
+            self.doubt = self._suspicion
         if self.doubt or np.array_equal(proposal.rows, controllers_of(self.kept)):
             return
         table = self.kept.with_controllers(proposal.rows)
         self._trial = _Trial(proposal, table, Swings.of(self._own, self.kept.supply_v))
         self.wish = Wish(table, f"{_lower(proposal.predicted)} error is predicted")
+
+    def _trusts(self, live: LiveModel) -> bool:
+        """Whether the readings that a model was fitted to can be true. One fit may be wrong: it holds up whatever is
+        tried. A second one in a row is believed: no error speaks for a set then, nor did it when a set was kept.
+        """
+        before, self._suspicion = self._suspicion, live.contradiction
+        if before and self._suspicion:
+            self.doubt = self._suspicion
+            if self._trial is not None:
+                self._end(self._trial, Outcome.UNTOLD, self._suspicion)
+            if self.kept.crc != self.start.crc:
+                self._give_up_kept(Outcome.UNTOLD, self._suspicion)
+        return not self._suspicion
 
     def hunted(self, joint: int) -> None:
         """A joint swings so that nobody can overlook it."""
@@ -279,7 +298,7 @@ class Adaptation:
         # Each look is another chance to be wrong: one for every new group.
         told = fresh and len(trial.seen) % GROUP == 0
         low, high = trial.ratio.within(scale.deviation) if told else (0.0, np.inf)
-        if high < 1.0 - LEAST_GAIN:
+        if high < 1.0 - LEAST_GAIN and not self._suspicion:
             return self._end(trial, Outcome.KEPT, f"{_lower(trial.ratio.value)} error")
         if low > 1.0:
             return self._end(trial, Outcome.WORSE, "more error")

@@ -14,6 +14,7 @@ from typing import Self
 
 import numpy as np
 
+from greywhale.adapt.contradiction import find_contradiction
 from greywhale.adapt.stretch import Stretch, chains_of, traces_of
 from greywhale.arm import ArmParameters
 from greywhale.base.types import Floats
@@ -63,6 +64,11 @@ class LiveModel:
             name: float(np.exp(one) if kind.logarithmic else one)
             for name, kind, one in zip(self.space.names, kinds, more, strict=True)
         }
+
+    @property
+    def contradiction(self) -> str:
+        """Why the readings cannot be true, in a clause; "" where they can."""
+        return find_contradiction(self.changes(), self.arm.joints_in_use)
 
     def refit(self, stretches: Sequence[Stretch], table: ParameterTable, seed: int) -> LiveModel:
         """The same arm after these stretches; joints that they do not move stay as they were."""

@@ -1,0 +1,35 @@
+"""Whether a joint's potentiometer turns as far as the joint's voltages say, from the fit to the last stretches.
+
+A reading that turns too little makes a speed and an acceleration cost more volts by the same factor, and leaves
+friction as it was. An arm that works does not change like that: a hot motor and a sagging supply make friction cost as
+much more, grease changes what a speed costs, a load what an acceleration costs.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from greywhale.protocol.joints import Joints
+
+# A reading is doubted that turns too little, or too far, by this factor. Of arms that were hot, worn, stiff, loaded or
+# short of supply none looked like more than 1.15; a potentiometer that lost 40 % of its gain looked like 1.5 to 1.8.
+DOUBTED = 1.35
+
+
+def find_contradiction(changes: Mapping[str, float], joints: Joints) -> str:
+    """A clause on the first joint whose reading contradicts its voltages, "" for none.
+
+    `changes` are those of `LiveModel.changes`: what each number has become, as a multiple of the identified one.
+    """
+    for joint in joints:
+        inertia, damping, friction = (
+            changes.get(f"joint{joint}.{kind}", 1.0) for kind in ("inertia", "damping", "coulomb")
+        )
+        too_little = min(inertia, damping) / max(1.0, friction)
+        too_far = min(1.0, friction) / max(inertia, damping)
+        if max(too_little, too_far) > DOUBTED:
+            return (
+                f"joint {joint}'s potentiometer turns {1.0 / damping:.1f} times as far as its motor's voltages say, "
+                "so nothing is kept; check that it is tight on its shaft"
+            )
+    return ""
