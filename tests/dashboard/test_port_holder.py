@@ -105,7 +105,7 @@ def test_a_stop_from_another_terminal_turns_the_motors_off_and_is_told(relay: Re
         assert there.wait(60)
         answer = ask_to_stop(board.port, wait_for_end=True)
     assert answer is not None
-    assert answer["state"] == "disabled"
+    assert (answer["state"], answer["goes_on"]) == ("disabled", True)
     assert board.asked(schema.StopRequest) > 0
     assert page.sentences[:3] == ["", f"open {board.port}", STOPPED]
 

@@ -49,6 +49,7 @@ class Session:
         self._key = _key(port)
         self._device = None if port in LENT else system.device_of(port)  # whoever lends a port listens for it
         self.asked = False
+        self.goes_on = False  # this process goes on after a stop, as a server does
         self._users = 0
         self._send_stop: Callable[[], None] | None = None
         self._send_clutch: Callable[[str], None] | None = None
@@ -202,7 +203,8 @@ class Session:
             problem = f"Switch the motors' supply off: {self.port} does not confirm the stop within {_CONFIRM_S:g} s."
             self.confirm({"problem": problem})
         if self._confirmed.is_set():
-            clients.answer(json.dumps({"pid": os.getpid(), **self._outcome}).encode() + b"\n")
+            answer = {"pid": os.getpid(), **self._outcome, **({"goes_on": True} if self.goes_on else {})}
+            clients.answer(json.dumps(answer).encode() + b"\n")
 
     def _end_motion(self) -> None:
         """Send the stop, and end what runs as Ctrl-C would, where the main thread may be interrupted."""
@@ -225,7 +227,8 @@ class Session:
 
 
 def ask_to_stop(port: str, wait_for_end: bool = False, heard_s: float = HEARD_S) -> dict[str, Any] | None:
-    """Stop the session that holds a port: its answer with "pid" and "state", None where no session holds the port.
+    """Stop the session that holds a port: its answer with "pid" and "state", and "goes_on" where its process does;
+    None where no session holds the port.
 
     The answer comes when the motors are off. With `wait_for_end` this returns when the port is free too.
     """

@@ -8,7 +8,7 @@ import subprocess
 import sys
 import threading
 import webbrowser
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
 from typing import Any, TypedDict
@@ -19,6 +19,7 @@ from click.core import ParameterSource
 from greywhale.base import bench_process, processes
 from greywhale.base.errors import BadUsage
 from greywhale.cli import completion
+from greywhale.cli.bench import Mistakes, bench_options, need_bench, show_mistakes, words_of
 from greywhale.cli.output import FILE, json_of, json_option, option, port_option, tell
 from greywhale.files.arm import load_arm
 
@@ -28,8 +29,8 @@ class Answer(TypedDict):
 
 
 @click.command("dashboard")
-@option("--sim", is_flag=True, help="Start the simulated bench with it.")
-@option("--board", type=click.Choice(["mega", "nano"]), default="mega", help="With --sim.")
+@option("--sim", is_flag=True, help="Start the simulated bench with it; the next six options belong to it.")
+@bench_options
 @option(
     "--arm",
     type=FILE,
@@ -45,18 +46,19 @@ class Answer(TypedDict):
 @option("--browser/--no-browser", default=True, help="Open the page in the browser.")
 @option("--http-port", type=click.IntRange(0, 65535), default=0, help="Port of the page; 0 is any free one.")
 @port_option
-@json_option(Answer)
+@json_option(Answer | Mistakes)
 @click.pass_context
 def command(
     context: click.Context,
+    /,
     sim: bool,
-    board: str,
     arm: Path | None,
     folder: Path,
     browser: bool,
     http_port: int,
     port: str | None,
     as_json: bool,
+    **of_bench: Any,
 ) -> None:
     """The arm live in the browser: what it does, its controllers, every verb.
 
@@ -64,8 +66,15 @@ def command(
     board may be plugged in later, and again. One page drives, others watch. The motors go off when the page that
     drives is closed or hangs. Ctrl-C ends the dashboard, motors off.
     """
-    if sim and context.get_parameter_source("port") is ParameterSource.COMMANDLINE:
+    words = words_of(of_bench)
+    for name, (flag, *_) in words.items():
+        if not sim and _is_given(context, name):
+            raise BadUsage(f"{flag} belongs to --sim; add that, or leave it out.")
+    if sim and _is_given(context, "port"):
         raise BadUsage("--sim brings a board of its own; leave --port out, or --sim.")
+    if "list" in of_bench["faults"]:
+        show_mistakes(as_json)
+        return
     if arm is not None:
         load_arm(arm)
 
@@ -77,7 +86,7 @@ def command(
             threading.Thread(target=webbrowser.open, args=(address,), daemon=True).start()
 
     with contextlib.ExitStack() as held:
-        starting = held.enter_context(_starting(board, arm)) if sim else None
+        starting = held.enter_context(_starting(words, arm)) if sim else None
         # It takes as long to import as a bench to start.
         from greywhale.dashboard import run
 
@@ -88,10 +97,15 @@ def command(
             run.serve(held_port, str(arm or "default"), folder, http_port, _catalogue, program, bench, ready)
 
 
+def _is_given(context: click.Context, name: str) -> bool:
+    return context.get_parameter_source(name) is ParameterSource.COMMANDLINE
+
+
 @contextlib.contextmanager
-def _starting(board: str, arm: Path | None) -> Iterator[Future[bench_process.BenchProcess]]:
+def _starting(options: Mapping[str, list[str]], arm: Path | None) -> Iterator[Future[bench_process.BenchProcess]]:
     """A bench that comes up meanwhile, and is ended whatever happens."""
-    words = ["--board", board, *([] if arm is None else ["--arm", str(arm)])]
+    need_bench()
+    words = [word for one in options.values() for word in one] + ([] if arm is None else ["--arm", str(arm)])
     with ThreadPoolExecutor(1) as pool:
         starting = pool.submit(bench_process.BenchProcess, *words)
         try:

@@ -9,6 +9,7 @@ import click
 
 from greywhale.base.errors import MOST_SEED
 from greywhale.cli import completion
+from greywhale.cli.bench import need_bench
 from greywhale.cli.output import FILE, json_option, option, progress, show, warn
 from greywhale.files import controller as controller_file
 from greywhale.files.arm import load_arm
@@ -49,6 +50,7 @@ def command(
     """
     require_folder(out, "logs and pictures")
     _check_inputs(leader, arm, controller)
+    need_bench()
     from greywhale.cli import story
 
     demo = story.DemoOptions(out=out, leader=leader, arm=arm, controller=controller, **options)

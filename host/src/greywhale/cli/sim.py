@@ -8,7 +8,8 @@ from typing import Any, TypedDict
 
 import click
 
-from greywhale.cli.output import FILE, json_option, option, show, tell, warn
+from greywhale.cli.bench import Mistakes, bench_options, show_mistakes
+from greywhale.cli.output import FILE, json_option, option, tell, warn
 from greywhale.files.leader import load_leader
 from greywhale.protocol.ports import lasting_name
 
@@ -17,26 +18,11 @@ class Port(TypedDict):
     port: str  # the bench's, as soon as it can be used
 
 
-class Mistakes(TypedDict):
-    mistakes: dict[str, str]  # with --mistake list: name to what is wrong then
-
-
 @click.command("sim")
-@option("--board", type=click.Choice(["mega", "nano"]), default="mega", help="The board.")
+@bench_options
 @option("--leader", type=FILE, help="CSV with the leader's motion.")
 @option("--arm", type=FILE, help="TOML with the arm; without it, the built-in one.")
-@option("--driver", default="drv8838", help="The motor drivers' chip; a wrong name lists all.")
 @option("--speed", type=click.Choice(["1", "max"]), default="1", help="Real time or faster.")
-@option("--eeprom", type=FILE, help="File that keeps the EEPROM between starts.")
-@option("--firmware", type=FILE, help="HEX file to start with, as if flashed.")
-@option("--blank", is_flag=True, help="Start with nothing but the bootloader.")
-@option(
-    "--mistake",
-    "faults",
-    multiple=True,
-    metavar="NAME",
-    help="Wire it wrongly, NAME or NAME:PLACE; `--mistake list` names all.",
-)
 @option("--by-hand", is_flag=True, help="Be the person: type `turn leader 0`, `hold 30`; `help` lists all.")
 @json_option(Port | Mistakes)
 def command(leader: Path | None, faults: tuple[str, ...], by_hand: bool, as_json: bool, **options: Any) -> None:
@@ -45,10 +31,7 @@ def command(leader: Path | None, faults: tuple[str, ...], by_hand: bool, as_json
     On stderr it says the name under which `greywhale ports` lists the port.
     """
     if "list" in faults:
-        from greywhale_sim.faults import FAULTS, listed
-
-        answer: Mistakes = {"mistakes": {one.name: one.says for one in FAULTS}}
-        show(as_json, answer, listed())
+        show_mistakes(as_json)
         return
     from greywhale_sim import serve
 

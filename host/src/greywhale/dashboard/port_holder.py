@@ -108,6 +108,7 @@ class PortHolder:
     def _share(self, device: Device, port: str) -> None:
         """Share the board. At the end its clients are told why, then its motors are stopped and its port is closed."""
         line, session = device.lend()
+        session.goes_on = True
         self._relay.open(line, port, session.refuse_motion)
         try:
             while not (self._ending.is_set() or self._away):
