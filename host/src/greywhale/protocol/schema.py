@@ -31,7 +31,7 @@ class State(Described):
     DISABLED = 1, "motors off, waiting for enable"
     SOFT_START = 2, "controllers run, voltage limit ramps up"
     FOLLOWING = 3, "controllers run at full voltage"
-    FAULT = 4, "motors off until clear_fault"
+    FAULT = 4, "motors off until the fault is cleared"
 
 
 class StopReason(Described):

@@ -12,7 +12,7 @@ enum class State : uint8_t {
   disabled = 1,  // motors off, waiting for enable
   soft_start = 2,  // controllers run, voltage limit ramps up
   following = 3,  // controllers run at full voltage
-  fault = 4,  // motors off until clear_fault
+  fault = 4,  // motors off until the fault is cleared
 };
 
 // Why the motors last went off.
