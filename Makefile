@@ -52,9 +52,10 @@ ready: # what it takes to build and run, without checks and tests
 demo: ready ## the whole story on the simulated bench; options in ARGS, e.g. ARGS="--leader motion.csv"
 	@$(PYTHON) -m greywhale demo --out build/demo --prove $(ARGS)
 
-dashboard: ## the page on the simulated bench, in the browser; options in ARGS, e.g. ARGS=--no-browser
+dashboard: ## the page on the simulated bench, in the browser, its files in build/dashboard; options in ARGS, e.g. ARGS=--no-browser
 	@$(SETUP) page
-	@$(PYTHON) -m greywhale dashboard --sim $(ARGS)
+	@mkdir -p build/dashboard
+	@$(PYTHON) -m greywhale dashboard --sim --folder build/dashboard $(ARGS)
 
 report: ready ## the paper from end to end, in build/report/report.html and .pdf; options in ARGS, e.g. ARGS=--quick
 	@$(PYTHON) -m greywhale reproduce --out build/report $(ARGS)

@@ -15,7 +15,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 from tools import ROOT
-from tools.setup import extensions, firmware, page, page_modules, platformio, system, venv
+from tools.setup import extensions, firmware, page, page_modules, platformio, stamps, system, venv
 from tools.setup.console import SetupError, say, side_by_side
 
 
@@ -35,6 +35,12 @@ def lock_folder() -> Iterator[None]:
             say("waiting for another set-up of this folder to finish")
             fcntl.flock(lock, fcntl.LOCK_EX)
         yield
+
+
+def tell_how_long() -> None:
+    """What a person waits for, where nothing is done yet (docs/setup.md has the times)."""
+    if not stamps.STAMPS.exists():
+        say("the first time this takes about 2 minutes, on a busy or slow computer up to 6; after that a second")
 
 
 def steps(with_page: bool, checks: bool) -> None:
@@ -63,6 +69,7 @@ def main(arguments: list[str]) -> int:
         signal.signal(request, signal.default_int_handler)
     try:
         with lock_folder():
+            tell_how_long()
             steps(with_page, checks)
     except SetupError as error:
         print(f"set-up: {error}", file=sys.stderr)
