@@ -25,6 +25,7 @@ class Page:
     def __init__(self, port: int, token: str) -> None:
         self.port = port
         self.token = token
+        self.ticket = ""
 
     def ask(
         self, method: str, path: str, body: object = None, headers: Mapping[str, str] | None = None

@@ -22,7 +22,7 @@ from pathlib import Path
 from greywhale.dashboard import run, server
 server.require_page = lambda: Path(".")
 with contextlib.suppress(KeyboardInterrupt):
-    ready = lambda address: print(address, flush=True)
+    ready = lambda access: print(access.address(), access.token, flush=True)
     run.serve(sys.argv[1], "default", Path("."), 0, list, ["false"], None, ready)
 """
 
@@ -34,7 +34,7 @@ def test_a_signal_turns_the_motors_off_and_ends_it(how: signal.Signals, tmp_path
         command = [sys.executable, "-c", SERVE, board.port]
         server = start(command, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
         assert server.stdout is not None
-        port, token = re.findall(r":(\d+)/#token=(\S+)", server.stdout.readline().decode())[0]
+        port, token = re.findall(r":(\d+)/#ticket=\S+ (\S+)", server.stdout.readline().decode())[0]
         with Page(int(port), token).open("/board") as socket:
             page = BoardSocket(socket)
             page.word("link", open=True)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import asyncio
 import json
-import secrets
 import socket as sockets
 import threading
 from collections.abc import Iterator
@@ -17,6 +16,7 @@ from starlette.types import Message, Receive, Scope, Send
 
 from greywhale.base.errors import UserError
 from greywhale.dashboard import server
+from greywhale.dashboard.access import Access
 from greywhale.dashboard.answers import Answers
 from greywhale.dashboard.bucket import Bucket
 from greywhale.dashboard.door import Door
@@ -45,12 +45,14 @@ def page(shared: Shared, tmp_path: Path) -> Iterator[Page]:
     (folder / "a log.csv").write_text(f"# {TITLE}\n{HEADING}\n" + "".join(f"{t}{12 * ',0'},boot\n" for t in (1, 1.001)))
     listener = server.listen()
     port: int = listener.getsockname()[1]
-    token = secrets.token_urlsafe(8)
+    access = Access(port)
     answers = Answers(shared.relay, Folder(folder), "default", jobs_of(shared.relay, Folder(folder)))
-    running = server.make_server(server.application(answers, files, token, port))
+    running = server.make_server(server.application(answers, files, access, port))
     thread = threading.Thread(target=running.run, args=([listener],), daemon=True)
     thread.start()
-    yield Page(port, token)
+    opened = Page(port, access.token)
+    opened.ticket = access.address().partition("=")[2]
+    yield opened
     running.should_exit = True
     thread.join()
 
@@ -74,6 +76,17 @@ def test_all_else_needs_it(page: Page) -> None:
     for token in ("", "x"):
         with pytest.raises(RefusedError, match="403"):
             Page(page.port, token).open("/board")
+
+
+def test_a_ticket_is_exchanged_for_the_token_once_and_by_its_own_page_alone(page: Page) -> None:
+    stranger = Page(page.port, "")
+    ticket = {"X-Greywhale-Ticket": page.ticket}
+    assert stranger.ask("GET", "/enter", headers=ticket)[0] == 403
+    assert stranger.ask("POST", "/enter", headers={**ticket, "Origin": "http://evil.example"})[0] == 403
+    assert json.loads(stranger.ask("POST", "/enter", headers=ticket)[1]) == {"token": page.token}
+    for headers in (ticket, {"X-Greywhale-Ticket": "é"}, {}):
+        status, said = stranger.ask("POST", "/enter", headers=headers)
+        assert (status, b"was used before, or is older than 10 minutes; press Enter" in said) == (403, True)
 
 
 FOREIGN = [

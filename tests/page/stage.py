@@ -20,6 +20,7 @@ from playwright.sync_api import Browser, BrowserContext, Page, Request, expect, 
 from greywhale.base.errors import UserError
 from greywhale.board.device import Device
 from greywhale.dashboard import server
+from greywhale.dashboard.access import Access
 from greywhale.dashboard.answers import Answers
 from greywhale.dashboard.bench import BenchControls
 from greywhale.dashboard.client import Client
@@ -58,7 +59,6 @@ FLAGS = [
     *("--no-sandbox", "--disable-background-timer-throttling", "--disable-gpu-compositing"),
     *("--disable-accelerated-2d-canvas", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"),
 ]
-TOKEN = "a-token-of-a-test"
 FRAME_MS = 200  # a page draws so rarely: software draws, and the time is better spent on what is tested
 PATIENCE_MS = 60_000  # a page that shows nothing for so long has hung
 # So long the board lives after a request of a verb and, every 0.1 s, a page's sign of life.
@@ -91,14 +91,20 @@ class Stage:
         self.answers = Answers(self.relay, own, "default", self.jobs, BenchControls(self.bench, own))
         self._listener = server.listen()
         self.port: int = self._listener.getsockname()[1]
-        self.page_address = f"http://127.0.0.1:{self.port}/#token={TOKEN}"
-        self._server = server.make_server(server.application(self.answers, server.require_page(), TOKEN, self.port))
+        self.access = Access(self.port)
+        self._server = server.make_server(
+            server.application(self.answers, server.require_page(), self.access, self.port)
+        )
         self._ready = threading.Condition()
         self.still = False  # only a stop lets the board live
         self._until_s = 0.0
         self._now_s = 0.0
         self._ending = False
         self._commands: list[tuple[str, Future[dict[str, Any]]]] = []
+
+    @property
+    def page_address(self) -> str:
+        return self.access.address()
 
     def stand_still(self) -> int:
         """Let time stand still until a stop comes; the tick at which it stands."""
@@ -141,7 +147,7 @@ class Stage:
 
     def runs(self, *changed: Parameter) -> dict[str, int]:
         """The raw values of these parameters, asked by another client; all others of the running set are defaults."""
-        with Watcher(self.port, TOKEN).open("/board") as socket:
+        with Watcher(self.port, self.access.token).open("/board") as socket:
             board, values = BoardSocket(socket), list(DEFAULTS)
             for one in changed:
                 reply = board.frame(ParamGetReply.TYPE, board.ask(ParamGetRequest(one.index)))
@@ -298,7 +304,8 @@ def visit(context: BrowserContext, stage: Place, script: str = "") -> Iterator[V
     page.add_init_script(OWN_TIME + script)
     page.set_default_timeout(PATIENCE_MS)
     told = Visit(page)
-    here = (stage.page_address, f"http://127.0.0.1:{stage.port}/", f"ws://127.0.0.1:{stage.port}/", "data:", "blob:")
+    address = stage.page_address
+    here = (address, f"http://127.0.0.1:{stage.port}/", f"ws://127.0.0.1:{stage.port}/", "data:", "blob:")
 
     def judge(request: Request) -> None:
         if not request.url.startswith(here):
@@ -308,7 +315,7 @@ def visit(context: BrowserContext, stage: Place, script: str = "") -> Iterator[V
     page.on("websocket", lambda socket: None if socket.url.startswith(here) else told.strange.append(socket.url))
     page.on("pageerror", lambda error: told.strange.append(str(error)))
     page.on("console", lambda said: told.strange.append(said.text) if said.type == "error" else None)
-    page.goto(stage.page_address)
+    page.goto(address)
     yield told
     page.close()
     assert told.strange == []

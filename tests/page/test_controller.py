@@ -20,7 +20,7 @@ from tests.dashboard.browser import BoardSocket
 from tests.dashboard.browser import Page as Watcher
 from tests.page.conftest import at_rest
 from tests.page.drag import drag, value_of
-from tests.page.stage import TOKEN, Stage, await_state
+from tests.page.stage import Stage, await_state
 
 pytestmark = pytest.mark.slow
 
@@ -98,7 +98,7 @@ def test_what_another_host_changed_is_shown_and_what_it_left_half_done_does_not_
     expect(page.get_by_label("Kp 1/rad")).to_have_value(f"{KP0.to_physical(DEFAULTS[KP0.index]):g}")
     page.get_by_role("button", name="Let go").click()
     expect(page.get_by_role("button", name="Take control")).to_be_enabled()  # so the server knows that nobody drives
-    with Watcher(stage.port, TOKEN).open("/board") as socket:
+    with Watcher(stage.port, stage.access.token).open("/board") as socket:
         other = BoardSocket(socket)
         socket.say({"kind": "drive"})
         other.word("driver", you=True)

@@ -35,8 +35,8 @@ def run() -> list[Figure]:
         server = start([*command, "--folder", folder], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
         try:
             assert server.stdout is not None
-            address = json.loads(server.stdout.readline())["address"]
-            page = _Page(int(re.findall(r":(\d+)/", address)[0]), address.partition("token=")[2])
+            told = json.loads(server.stdout.readline())
+            page = _Page(int(re.findall(r":(\d+)/", told["address"])[0]), told["token"])
             page.samples()
             first_s = time.monotonic() - begun
             return [

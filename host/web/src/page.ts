@@ -1,4 +1,4 @@
-// The page's entry: takes the token out of the address, opens the board, and shows the views.
+// The page's entry: gets the server's token, opens the board, and shows the views.
 
 import "./page.css";
 import { ArmView } from "./arm3d/view";
@@ -10,34 +10,28 @@ import type { Host } from "./host";
 import { LiveView } from "./live/view";
 import { LogsView } from "./logs/view";
 import { el } from "./parts/dom";
-import { tabStore } from "./parts/storage";
 import { startTheme } from "./parts/theme";
 import { Session } from "./session";
 import { Shell } from "./shell";
+import { findAccess, type Access } from "./sources/access";
 import { ServerBoard } from "./sources/server";
 import { ServerHost } from "./sources/server_host";
 
-const KEY = "greywhale-token";
+startTheme();
+void findAccess().then(begin);
 
-/** The secret of the server, out of the address bar and kept for a reload of this tab; it stays there where nothing is kept. */
-function takeToken(): string {
-  const given = new URLSearchParams(location.hash.slice(1)).get("token");
-  if (given && tabStore.write(KEY, given)) history.replaceState(null, "", location.pathname);
-  return given ?? tabStore.read(KEY) ?? "";
+function begin({ token, sentence }: Access): void {
+  const board = new ServerBoard(token, sentence);
+  const session = new Session(board);
+  const shell = new Shell(session, [new LiveView(session)], [
+    "Plug the board in by USB: this page takes it by itself. Without a board, start ", el("code", {}, "greywhale dashboard --sim"),
+    ": it brings a simulated arm with the real firmware.",
+  ]);
+  if (token) addHost(shell, session, new ServerHost(token, () => board.page));
 }
 
-startTheme();
-const token = takeToken();
-const board = new ServerBoard(token);
-const session = new Session(board);
-const shell = new Shell(session, [new LiveView(session)], [
-  "Plug the board in by USB: this page takes it by itself. Without a board, start ", el("code", {}, "greywhale dashboard --sim"),
-  ": it brings a simulated arm with the real firmware.",
-]);
-if (token) addHost(new ServerHost(token, () => board.page));
-
 /** Adds what needs a host beside the board. */
-function addHost(host: Host): void {
+function addHost(shell: Shell, session: Session, host: Host): void {
   const arm = new ArmView(session, host);
   for (const view of [arm, new ControllerView(session, host), new DoView(session, host), new LogsView(session, host)]) {
     shell.add(view);

@@ -11,7 +11,7 @@ import webbrowser
 from collections.abc import Iterator, Mapping
 from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
-from typing import Any, TypedDict
+from typing import TYPE_CHECKING, Any, TypedDict
 
 import click
 from click.core import ParameterSource
@@ -21,11 +21,16 @@ from greywhale.base.errors import BadUsage
 from greywhale.cli import completion
 from greywhale.cli.bench import Mistakes, bench_options, need_bench, show_mistakes, words_of
 from greywhale.cli.output import FILE, json_of, json_option, option, port_option, tell
+from greywhale.cli.person import on_enter
 from greywhale.files.arm import load_arm
+
+if TYPE_CHECKING:
+    from greywhale.dashboard.access import Access
 
 
 class Answer(TypedDict):
-    address: str  # to open in a browser, with the token, as soon as it can be
+    address: str  # to open in a browser, once
+    token: str  # with which a program asks
 
 
 @click.command("dashboard")
@@ -62,9 +67,9 @@ def command(
 ) -> None:
     """The arm live in the browser: what it does, its controllers, every verb.
 
-    Prints the page's address, which holds a secret: whoever knows it drives the arm. Only this machine reaches it. A
-    board may be plugged in later, and again. One page drives, others watch. The motors go off when the page that
-    drives is closed or hangs. Ctrl-C ends the dashboard, motors off.
+    Prints the page's address, which opens it once, within ten minutes; Enter prints another one. Whoever opens it may
+    drive the arm. Only this machine reaches it. A board may be plugged in later, and again. One page drives, others
+    watch. The motors go off when the page that drives is closed or hangs. Ctrl-C ends the dashboard, motors off.
     """
     words = words_of(of_bench)
     for name, (flag, *_) in words.items():
@@ -78,12 +83,15 @@ def command(
     if arm is not None:
         load_arm(arm)
 
-    def ready(address: str) -> None:
-        answer: Answer = {"address": address}
-        click.echo(json_of(answer) if as_json else address)
-        tell("greywhale: the page is there; Ctrl-C here ends it, motors off.")
-        if browser:
-            threading.Thread(target=webbrowser.open, args=(address,), daemon=True).start()
+    def ready(access: Access) -> None:
+        answer: Answer = {"address": access.address(), "token": access.token}
+        click.echo(json_of(answer) if as_json else answer["address"])
+        asks = not as_json and sys.stdin.isatty()
+        tell(f"greywhale: the page is there; Ctrl-C here ends it, motors off{'; Enter prints another address' * asks}.")
+        if asks:
+            threading.Thread(target=on_enter, args=(lambda: click.echo(access.address()),), daemon=True).start()
+        if browser:  # with an address of its own: the printed one may be opened elsewhere
+            threading.Thread(target=webbrowser.open, args=(access.address(),), daemon=True).start()
 
     with contextlib.ExitStack() as held:
         starting = held.enter_context(_starting(words, arm)) if sim else None

@@ -5,6 +5,8 @@ from __future__ import annotations
 import os
 import shutil
 import sys
+import time
+from collections.abc import Callable
 
 import click
 
@@ -15,7 +17,23 @@ from greywhale.cli.output import tell
 
 WORDS = {"back": Answer.BACK, "again": Answer.AGAIN, "skip": Answer.SKIP, "yes": Answer.DONE, "": Answer.DONE}
 WORDS |= {word[:1]: answer for word, answer in WORDS.items()}
+LOOK_AGAIN_S = 0.5
 NO = ("n", "no", "q", "quit")
+
+
+def on_enter(act: Callable[[], None]) -> None:
+    """Do this whenever Enter is pressed, until the terminal is closed."""
+    while True:
+        system.has_typed(sys.stdin, wait=True)
+        if not system.in_foreground():  # the line is another program's, and to read it would stop this one
+            time.sleep(LOOK_AGAIN_S)
+            continue
+        try:
+            if not os.read(sys.stdin.fileno(), 4096):
+                return
+        except OSError:
+            return
+        act()
 
 
 class Terminal:

@@ -12,11 +12,13 @@ from collections.abc import Callable
 from starlette.responses import PlainTextResponse
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
+from greywhale.dashboard.access import ANEW
 from greywhale.dashboard.bucket import Bucket
 from greywhale.dashboard.door import Address, Door
 
 SUBPROTOCOL = "greywhale"
 TOKEN_PREFIX = "token."
+ENTRY = "/enter"  # where a ticket is exchanged for the token
 MOST_BODY_BYTES = 1 << 20
 # Of all who have the token. A page asks for some ten things at its start, and then for one at a time.
 REQUESTS_A_SECOND, AT_ONCE = 100.0, 300.0
@@ -83,9 +85,11 @@ class Guard:
             return self._refusal_of_owner(scope["client"])
         if not self.door.may_ask(scope["client"]):
             return 429, "Too many requests without the token; wait a second."
+        if scope["type"] == "http" and (scope["method"], scope["path"]) == ("POST", ENTRY):
+            return None
         if scope["type"] == "http" and scope["method"] in ("GET", "HEAD") and self._is_public(scope["path"]):
             return None
-        return 403, "The token is missing or not this server's; open the address that it printed."
+        return 403, f"The token is missing or not this server's; {ANEW}"
 
     def _refusal_of_owner(self, address: Address) -> tuple[int, str] | None:
         """The same of a request with the token, whatever strangers do."""

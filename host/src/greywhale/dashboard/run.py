@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import secrets
 import signal
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
@@ -14,6 +13,7 @@ import uvicorn
 from greywhale.base import system
 from greywhale.base.bench_process import RunningBench
 from greywhale.dashboard import server
+from greywhale.dashboard.access import Access
 from greywhale.dashboard.answers import Answers
 from greywhale.dashboard.bench import BenchControls
 from greywhale.dashboard.folder import Folder
@@ -32,9 +32,9 @@ def serve(
     catalogue: Callable[[], list[VerbFacts]],
     program: Sequence[str],
     bench: RunningBench | None,
-    ready: Callable[[str], None],
+    ready: Callable[[Access], None],
 ) -> None:
-    """Serve until Ctrl-C; `ready` gets the address, with its token, when the page can be opened.
+    """Serve until Ctrl-C; `ready` gets the access to it when the page can be opened.
 
     `port` is the board's, None for the only one found; verbs work in the folder `path`; `catalogue` and `program` are
     as in `Jobs`.
@@ -44,16 +44,16 @@ def serve(
     holder = PortHolder(relay, port)
     jobs = Jobs(relay, folder, catalogue, program, holder.away)
     answers = Answers(relay, folder, arm, jobs, None if bench is None else BenchControls(bench, folder))
-    token = secrets.token_urlsafe(24)
     with contextlib.ExitStack() as held:
         listener = held.enter_context(server.listen(http_port))
         served: int = listener.getsockname()[1]
-        running = server.make_server(server.application(answers, page, token, served))
+        access = Access(served)
+        running = server.make_server(server.application(answers, page, access, served))
         held.callback(holder.close)
         held.callback(jobs.close)  # first, while their board is there
         held.enter_context(_ending_on_hangup(running))
         holder.start()
-        ready(f"http://127.0.0.1:{served}/#token={token}")
+        ready(access)
         running.run([listener])
 
 

@@ -14,15 +14,16 @@ from typing import Any
 import uvicorn
 from starlette.applications import Starlette
 from starlette.requests import ClientDisconnect, Request
-from starlette.responses import JSONResponse, Response
+from starlette.responses import JSONResponse, PlainTextResponse, Response
 from starlette.routing import BaseRoute, Mount, Route, WebSocketRoute
 from starlette.staticfiles import StaticFiles
 
 from greywhale.base.errors import BadUsage, UserError
+from greywhale.dashboard.access import ANEW, LASTS_S, Access
 from greywhale.dashboard.answers import Answers
 from greywhale.dashboard.connections import Server
 from greywhale.dashboard.door import Door
-from greywhale.dashboard.guard import Guard
+from greywhale.dashboard.guard import ENTRY, Guard
 from greywhale.dashboard.sockets import serve_board, serve_host
 
 PAGE = Path(__file__).resolve().parent / "page"
@@ -39,9 +40,10 @@ def require_page(page: Path = PAGE) -> Path:
     return page
 
 
-def application(answers: Answers, page: Path, token: str, port: int) -> Guard:
-    """All that the server does, at this port of the loopback, for who has the token."""
+def application(answers: Answers, page: Path, access: Access, port: int) -> Guard:
+    """All that the server does, at this port of the loopback, for who has access."""
     routes: list[BaseRoute] = [
+        Route(ENTRY, _entry(access), methods=["POST"]),
         WebSocketRoute("/board", partial(serve_board, relay=answers.relay)),
         WebSocketRoute("/host", partial(serve_host, jobs=answers.jobs)),
         Route("/history", _told(lambda asked: answers.history(asked.get("from")))),
@@ -63,7 +65,9 @@ def application(answers: Answers, page: Path, token: str, port: int) -> Guard:
     private = {route.path for route in routes if isinstance(route, Route | WebSocketRoute)}
     first = {path.split("/")[1] for path in private}
     files = Mount("/", StaticFiles(directory=page, html=True))
-    return Guard(Starlette(routes=[*routes, files]), token, port, lambda path: path.split("/")[1] not in first, Door())
+    return Guard(
+        Starlette(routes=[*routes, files]), access.token, port, lambda path: path.split("/")[1] not in first, Door()
+    )
 
 
 def listen(port: int = 0) -> socket.socket:
@@ -97,6 +101,18 @@ def make_server(app: Guard) -> Server:
         lifespan="off",
     )
     return Server(config, app.door)
+
+
+def _entry(access: Access) -> Callable[[Request], Awaitable[Response]]:
+    async def enter(request: Request) -> Response:
+        token = access.exchange(request.headers.get("x-greywhale-ticket", ""))
+        if token is not None:
+            return JSONResponse({"token": token})
+        return PlainTextResponse(
+            f"This address was used before, or is older than {LASTS_S / 60:.0f} minutes; {ANEW}", 403
+        )
+
+    return enter
 
 
 def _told(answer: Callable[[dict[str, Any]], object]) -> Callable[[Request], Awaitable[Response]]:

@@ -21,7 +21,8 @@ export class ServerBoard implements Board {
   private driving = false;
   private met = false;
 
-  constructor(private readonly token: string) {
+  /** Without a token it says why, in a sentence. */
+  constructor(private readonly token: string, private readonly sentence: string) {
     setInterval(() => {
       if (this.driving && document.visibilityState === "visible") this.say("here");
     }, HERE_EVERY_MS);
@@ -33,8 +34,7 @@ export class ServerBoard implements Board {
       this.open();
       return;
     }
-    const sentence = "This address lacks its secret; open the whole one that `greywhale dashboard` printed.";
-    listener.link({ open: false, port: "", sentence });
+    listener.link({ open: false, port: "", sentence: this.sentence });
   }
 
   private open(): void {
