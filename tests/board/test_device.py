@@ -5,6 +5,7 @@ from __future__ import annotations
 import errno
 import math
 import os
+import signal
 from pathlib import Path
 
 import pytest
@@ -139,6 +140,28 @@ def test_enabled_stops_on_ctrl_c_and_after_a_refusal() -> None:
         with pytest.raises(NoAnswerError), device.enabled(500):
             pass
         assert board.state is State.DISABLED
+
+
+class Pressed(FakeBoard):
+    """A person presses Ctrl-C when this board is asked to stop for the first time."""
+
+    pressed = False
+
+    def write(self, data: bytes) -> None:
+        if data.startswith(b"\0") and not self.pressed:
+            self.pressed = True
+            os.kill(os.getpid(), signal.SIGINT)
+        super().write(data)
+
+
+def test_a_ctrl_c_while_a_verb_stops_the_motors_itself_keeps_it_from_starting_them_again() -> None:
+    with Pressed() as board, open_device(board) as device:
+        with pytest.raises(KeyboardInterrupt):
+            for _ in range(3):
+                with device.enabled(500):
+                    board.live()
+        assert board.state is State.DISABLED
+        assert (board.asked(schema.EnableRequest), device.status().state) == (1, State.DISABLED)
 
 
 def test_an_unconfirmed_stop_is_told_with_the_error() -> None:

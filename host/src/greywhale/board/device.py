@@ -10,13 +10,14 @@ from __future__ import annotations
 import contextlib
 import logging
 import signal
-import threading
 from collections import deque
 from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager
 from types import TracebackType
 from typing import Any, Self
 
 from greywhale.base.errors import UserError
+from greywhale.base.interrupts import hold_back
 from greywhale.board.refusal import RefusedError
 from greywhale.board.session import Session
 from greywhale.protocol import schema
@@ -399,14 +400,6 @@ def version(hello: schema.HelloReply) -> str:
     return f"{hello.fw_major}.{hello.fw_minor}.{hello.fw_patch}"
 
 
-@contextlib.contextmanager
-def hold_ctrl_c() -> Iterator[None]:
-    """Hold Ctrl-C back for what takes a second at most, such as a stop (only the main thread receives it)."""
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGINT, before)
+def hold_ctrl_c() -> AbstractContextManager[None]:
+    """Hold Ctrl-C back for what takes a second at most, such as a stop."""
+    return hold_back(signal.SIGINT)

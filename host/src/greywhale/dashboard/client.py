@@ -70,6 +70,6 @@ class Client:
         if self._stopped is None:
             return ""
         self._refused += 1
-        if self._refused > 1:  # it goes on, so the first Ctrl-C was lost, as while it stopped the motors itself
+        if self._refused > 1:  # it goes on, so the first Ctrl-C did not reach it
             self._end(self._stopped)
         return self._stopped or "it was stopped; start the verb again."

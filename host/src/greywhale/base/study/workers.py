@@ -15,9 +15,9 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, Future, ProcessPoolExecutor
 from contextlib import AbstractContextManager, nullcontext
 from multiprocessing import resource_tracker
-from typing import Any, ParamSpec, Protocol, TypeVar
+from typing import ParamSpec, Protocol, TypeVar
 
-from greywhale.base import system
+from greywhale.base import interrupts, system
 from greywhale.base.errors import BadUsage
 from greywhale.base.processes import safe_path
 from greywhale.base.study.cluster import ClusterWorkers
@@ -130,8 +130,7 @@ def _prepare(receive: Callable[[], object]) -> None:
 def _hold_interrupts() -> Iterator[None]:
     """Hold Ctrl-C back while other processes are started.
 
-    Ctrl-C reaches all processes of a terminal, but only this one may answer it. The others inherit the mask. This
-    process may receive the signal in any of its threads, and notes it for later.
+    Ctrl-C reaches all processes of a terminal, but only this one may answer it. The others inherit the mask.
     """
     if threading.current_thread() is not threading.main_thread():
         yield
@@ -139,16 +138,5 @@ def _hold_interrupts() -> Iterator[None]:
     if system.HANDS_DOWN_DESCRIPTORS:  # else there is no tracker
         # Starting it removes the mask, so it must run already when the others start.
         resource_tracker.ensure_running()
-    noted: list[int] = []
-    before: dict[int, Any] = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
-    for number in before:
-        signal.signal(number, lambda number, frame: noted.append(number))
-    try:
-        with system.no_interrupts_for_children():
-            yield
-    finally:
-        for number, handler in before.items():
-            # None: not a handler of Python's, which cannot be put back.
-            signal.signal(number, signal.SIG_DFL if handler is None else handler)
-        if noted:
-            signal.raise_signal(noted[0])
+    with interrupts.hold_back(signal.SIGINT, signal.SIGTERM), system.no_interrupts_for_children():
+        yield
