@@ -38,6 +38,33 @@ def test_a_verb_that_runs_is_seen_stopped_and_alone_after_sixty_others(shared: S
         desk.start("info")
 
 
+SAYS_NOTHING = {
+    "begins": "import time; time.sleep(3600)",  # Ctrl-C ends it as any program of Python
+    "ends at once": "import signal; signal.signal(signal.SIGINT, signal.SIG_DFL); signal.pause()",
+    "ends as if nothing had been": "import signal; signal.signal(signal.SIGINT, lambda *_: exit(0)); signal.pause()",
+    "has begun its answer": "print('{', end='', flush=True); import signal; signal.pause()",
+}
+
+
+@pytest.mark.parametrize("program", SAYS_NOTHING.values(), ids=SAYS_NOTHING)
+def test_a_verb_that_was_stopped_and_says_nothing_was_stopped(shared: Shared, tmp_path: Path, program: str) -> None:
+    desk = Desk(shared, tmp_path, [sys.executable, "-c", program])
+    with closing(desk.jobs):
+        id = desk.start("record")
+        desk.jobs.stop(id)
+        job = desk.wait(id)
+    assert (job["state"], job["error"]) == ("stopped", "record was stopped before it had an answer.")
+
+
+@pytest.mark.parametrize("said", ["", "{", "no JSON"])
+def test_a_verb_that_ends_by_itself_without_an_answer_has_failed(shared: Shared, tmp_path: Path, said: str) -> None:
+    desk = Desk(shared, tmp_path, [sys.executable, "-c", f"print({said!r}, end=''); exit(3)"])
+    with closing(desk.jobs):
+        job = desk.run("record")
+    assert (job["state"], job["result"]) == ("failed", None)
+    assert job["error"] == "record ended without an answer (exit code 3)."
+
+
 def test_a_verb_gets_no_board_that_another_has(shared: Shared, tmp_path: Path) -> None:
     desk = Desk(shared, tmp_path, WAITS)
     with closing(desk.jobs):

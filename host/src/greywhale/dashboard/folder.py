@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import errno
 from collections.abc import Iterator
 from pathlib import Path
 from typing import TypedDict
@@ -33,13 +34,12 @@ class Folder:
     def inside(self, name: str) -> Path:
         """The whole path of a name; one that leads out of the folder is refused, also through a link."""
         whole = self.path / name if name and name.isprintable() else None
-        try:
-            inside = whole is not None and whole.resolve().is_relative_to(self.path)
-        except (OSError, RuntimeError):
-            raise BadUsage(f"{cut(name)}: its links lead in a circle; name another file.") from None
-        if whole is None or not inside:
+        told = cut(name if name.isprintable() else repr(name))
+        if whole is not None and _leads_in_circle(whole):
+            raise BadUsage(f"{cut(name)}: its links lead in a circle; name another file.")
+        if whole is None or not whole.resolve().is_relative_to(self.path):
             raise BadUsage(
-                f"{cut(name) or 'an empty name'}: it is not in {self.path}; name a file there, or start the dashboard "
+                f"{told or 'an empty name'}: it is not in {self.path}; name a file there, or start the dashboard "
                 "with another --folder."
             )
         return whole
@@ -53,14 +53,31 @@ class Folder:
             raise BadUsage(f"{cut(name)}: it cannot be read: {os_reason(error)}; name another file.") from None
         return whole
 
+    def argument(self, text: str) -> None:
+        """Refuse a verb's argument that leads out of the folder: any text may be a name, and what follows a "=" too."""
+        for name in (text, text.rpartition("=")[2] or text):
+            self.inside(name)
+
     def files(self) -> list[FileFacts]:
         """What verbs could take, here and one folder down, by name."""
         found: list[FileFacts] = []
         for path in sorted([*self.path.glob("*"), *self.path.glob("*/*")])[:MOST_FILES]:
-            kind = _kind(path)
+            name, kind = str(path.relative_to(self.path)), ""
+            with contextlib.suppress(UserError):
+                self.argument(name)
+                kind = _kind(path)
             if kind and not path.name.startswith("."):
-                found.append({"name": str(path.relative_to(self.path)), "kind": kind})
+                found.append({"name": name, "kind": kind})
         return found
+
+
+def _leads_in_circle(path: Path) -> bool:
+    """Whether the links of a path do; from Python 3.13 on `resolve` says nothing of it."""
+    try:
+        path.stat()
+    except OSError as error:
+        return error.errno == errno.ELOOP
+    return False
 
 
 def _kind(path: Path) -> str:

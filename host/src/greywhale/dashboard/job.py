@@ -232,12 +232,13 @@ class Job:
                 pipe.close()
         self._wake_out.close()
         self._wake_in.close()
+        stopped = self._stopping or code in (INTERRUPTED, -signal.SIGINT)
         try:
             answer = json.loads(self._printed)
         except ValueError:
-            answer = {"error": f"{self.facts['verb']} ended without an answer (exit code {code})."}
-        failed = (isinstance(answer, dict) and "exit_code" in answer and "error" in answer) or not self._printed
-        stopped = code == INTERRUPTED or self._stopping
+            how = "was stopped before it had an answer" if stopped else f"ended without an answer (exit code {code})"
+            answer = {"error": f"{self.facts['verb']} {how}.", "exit_code": code}
+        failed = isinstance(answer, dict) and "exit_code" in answer and "error" in answer
         self.facts["exit_code"] = code
         self.facts["error"] = self._with_reason(answer["error"]) if failed else None
         self.facts["result"] = None if failed else answer

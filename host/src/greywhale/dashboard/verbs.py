@@ -72,5 +72,5 @@ def _texts(argument: ArgumentFacts, value: object, folder: Folder) -> Iterator[s
         if not fits or not text or not text.isprintable() or len(text) > LONGEST_VALUE:
             raise BadUsage(f"{argument['name']} is {cut(repr(one))}, but it must be text or a number.")
         if isinstance(one, str):
-            folder.inside(text.rpartition("=")[2] or text)
+            folder.argument(text)
         yield text
