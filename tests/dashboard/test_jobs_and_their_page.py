@@ -110,7 +110,9 @@ def meanwhile(monkeypatch: pytest.MonkeyPatch, step: str, act: Callable[[], obje
 
 
 @pytest.mark.parametrize("step", STEPS)
-@pytest.mark.parametrize("how", ["is closed", "lets go", "is stopped", "is stopped by a watcher"])
+@pytest.mark.parametrize(
+    "how", ["is closed", "lets go", "is stopped", "is stopped by a watcher", "is stopped at a terminal"]
+)
 def test_no_verb_outlives_its_page_or_a_stop_whenever_they_come(
     shared: Shared, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, step: str, how: str
 ) -> None:
@@ -120,6 +122,7 @@ def test_no_verb_outlives_its_page_or_a_stop_whenever_they_come(
         "lets go": lambda: shared.relay.release(desk.page.client),
         "is stopped": lambda: desk.page.ask(schema.StopRequest()),
         "is stopped by a watcher": lambda: watcher.ask(schema.StopRequest()),
+        "is stopped at a terminal": lambda: shared.relay.stopped("with `greywhale stop` in another terminal"),
     }
     with closing(desk.jobs):
         with monkeypatch.context() as patched, contextlib.suppress(UserError):
