@@ -13,8 +13,13 @@ import numpy as np
 
 from greywhale.base.types import Floats
 from greywhale.board.device import stop_message
+from greywhale.files import controller
+from greywhale.files.arm import default_arm
+from greywhale.files.paper_tables import paper_table
 from greywhale.motion import human_reaches
 from greywhale.protocol import frames, schema
+from greywhale.protocol.table import ParameterTable
+from greywhale.tune.travel import travel_of
 from greywhale_sim.board_with_image import CYCLES_PER_TICK
 from tools.attack import pot_lies
 from tools.attack.arm_on_board import SLICE_S, ArmOnBoard, Leader
@@ -40,7 +45,7 @@ class Trial:
     where: int
 
 
-def _reverse_motor(arm: ArmOnBoard, joint: int) -> None:
+def reverse_motor(arm: ArmOnBoard, joint: int) -> None:
     arm.motor_signs[joint] = -1.0
 
 
@@ -136,7 +141,7 @@ def faults() -> dict[str, Inject]:
         "follower frozen": pot_lies.freeze,
         "follower reads neighbour": pot_lies.read_neighbour,
         "follower touches neighbour": pot_lies.touch_neighbour,
-        "motor reversed": _reverse_motor,
+        "motor reversed": reverse_motor,
         "follower pot reversed": pot_lies.reverse,
         "joint blocked": _block,
     }
@@ -157,6 +162,27 @@ def person(seed: int) -> Leader:
     return at
 
 
+def tuned_travel() -> dict[str, int]:
+    """How far a voltage moves each joint, as `greywhale tune` works it out for the default arm, raw."""
+    travel = travel_of(default_arm(), ParameterTable.defaults(), samples=1)
+    assert travel is not None
+    return travel.raw()
+
+
+def arm_at_work(board: str, seed: int) -> tuple[ArmOnBoard, str]:
+    """A board with its arm, and what it knows of how far a voltage moves that.
+
+    Even seeds run the paper's untuned controllers, odd ones its tuned ones and the numbers of travel that belong to
+    the arm. Unrest is off: the tuned ones make a joint of this arm ring at times, which is not the fault that is meant.
+    """
+    travel = tuned_travel() if seed % 2 else {}
+    arm = ArmOnBoard(board, person(seed), seed)
+    table = paper_table(("before_tuning", "table_10")[seed % 2])
+    changes = {key: int(raw) for key, raw in controller.load(table).raw_values().items()}
+    arm.run_set(changes | {"soft_start_ms": SOFT_START_MS, "unrest_amplitude": 0} | travel)
+    return arm, "travel known" if travel else "travel unknown"
+
+
 def begin(arm: ArmOnBoard) -> None:
     """All in order, and some of a motion done: the moment for a fault."""
     arm.start()
@@ -165,13 +191,13 @@ def begin(arm: ArmOnBoard) -> None:
     arm.shift_phase()
 
 
-def suffer(arm: ArmOnBoard, inject: Inject, joint: int) -> Trial:
+def suffer(arm: ArmOnBoard, inject: Inject, joint: int, patience_s: float = PATIENCE_S) -> Trial:
     """From the fault to the motors off; the arm can be used again."""
     before = abs(arm.true_error[joint])
     begun, place, wrong, gone = arm.board.cycle, arm.angles[joint], 0.0, 0.0
     inject(arm, joint)
     off_ms = None
-    for _ in range(round(PATIENCE_S / SLICE_S)):
+    for _ in range(round(patience_s / SLICE_S)):
         arm.slice()
         if not arm.motors_on:
             off_ms = (arm.board.cycle - begun) / CYCLES_PER_TICK

@@ -18,8 +18,9 @@ figure on this page was counted by `make attack` on the code whose digest stands
 same attacks runs in every `make test`.
 
 A violation is a trial that broke what the section says must hold. The firmware's page tells
-[why a lie of a potentiometer is not always found](firmware.md#how-a-follower-must-move). `min` are the minutes that
-all workers together took for a part.
+[why a lie of a potentiometer is not always found](firmware.md#how-a-follower-must-move). Of slow lies and of
+two faults at once nothing is promised: [a table](#slow-lies-and-two-faults-at-once) says what they cost. `min` are the
+minutes that all workers together took for a part.
 """
 
 FAULTS_HEAD = """## The faults and how soon the motors are off

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from tools.attack.part import Part
-from tools.attack.parts import cuts, eeprom, faults, fuzz, link, soak
+from tools.attack.parts import cuts, eeprom, faults, fuzz, lies, link, soak
 
 PARTS: tuple[Part, ...] = (
     faults.PART,
+    lies.PART,
     link.PART,
     fuzz.PART,
     cuts.PART,

@@ -4,14 +4,8 @@ from __future__ import annotations
 
 from functools import partial
 
-from greywhale.files import controller
-from greywhale.files.arm import default_arm
-from greywhale.files.paper_tables import paper_table
-from greywhale.protocol.table import ParameterTable
-from greywhale.tune.travel import travel_of
 from greywhale_sim.wiring import BOARDS
-from tools.attack.arm_faults import LEASE_MS, SOFT_START_MS, Trial, begin, faults, person, suffer
-from tools.attack.arm_on_board import ArmOnBoard
+from tools.attack.arm_faults import LEASE_MS, Trial, arm_at_work, begin, faults, suffer
 from tools.attack.copies import in_a_copy
 from tools.attack.part import Part, Piece, Row, split
 
@@ -54,33 +48,16 @@ def count(board: str, name: str, trial: Trial, limit: str = "") -> Row:
     return Row(f"{board}: {name}{limit}", 1, int(is_violation(name, trial)), {seen: 1}, worst)
 
 
-def tuned_travel() -> dict[str, int]:
-    """How far a voltage moves each joint, as `greywhale tune` works it out for the default arm, raw."""
-    travel = travel_of(default_arm(), ParameterTable.defaults(), samples=1)
-    assert travel is not None
-    return travel.raw()
-
-
 def run(piece: Piece) -> list[Row]:
-    """At each moment every fault in a copy of its own: all of them meet the same motion and the same phase of a tick.
-
-    Even seeds run the paper's untuned controllers, odd ones its tuned ones and the numbers of travel that belong to
-    the arm. Unrest is off: the tuned ones make a joint of this arm ring at times, which is not the fault that is meant.
-    """
-    seed = piece["seed"]
-    travel = tuned_travel() if seed % 2 else {}
-    known = ", travel known" if travel else ", travel unknown"
-    arm = ArmOnBoard(piece["board"], person(seed), seed)
-    table = paper_table(("before_tuning", "table_10")[seed % 2])
-    changes = {key: int(raw) for key, raw in controller.load(table).raw_values().items()}
-    arm.run_set(changes | {"soft_start_ms": SOFT_START_MS, "unrest_amplitude": 0} | travel)
+    """At each moment every fault in a copy of its own: all meet the same motion and the same phase of a tick."""
+    arm, known = arm_at_work(piece["board"], piece["seed"])
     chosen = {name: inject for name, inject in faults().items() if name in piece.get("faults", faults())}
     rows = []
     for moment in range(piece["trials"]):
         begin(arm)
         for name, inject in chosen.items():
             trial = in_a_copy(partial(suffer, arm, inject, moment % 4))
-            rows.append(count(piece["board"], name, trial, known if name in BY_TRAVEL else ""))
+            rows.append(count(piece["board"], name, trial, f", {known}" if name in BY_TRAVEL else ""))
     return rows
 
 

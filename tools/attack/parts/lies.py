@@ -1,0 +1,58 @@
+"""What a lie costs that is slow, or two faults at once: how far the arm goes before anybody knows."""
+
+from __future__ import annotations
+
+from functools import partial
+
+from greywhale_sim.wiring import BOARDS
+from tools.attack.arm_faults import Trial, arm_at_work, begin, suffer
+from tools.attack.copies import in_a_copy
+from tools.attack.part import Part, Piece, Row, split
+from tools.attack.parts import faults
+from tools.attack.slow_lies import slow_lies
+
+MOMENTS, PER_PIECE = 40, 5
+PATIENCE_S = 3.0
+FAR = f"beyond {faults.FARTHEST_RAD} rad"
+
+
+def count(board: str, name: str, known: str, trial: Trial) -> Row:
+    seen = {trial.fault if trial.off_ms is not None else "motors stayed on": 1}
+    if trial.wrong_rad > faults.FARTHEST_RAD:
+        seen[FAR] = 1
+    return Row(f"{board}: {name}, {known}", 1, 0, seen, {"rad": round(trial.wrong_rad, 2)})
+
+
+def run(piece: Piece) -> list[Row]:
+    """At each moment every lie in a copy of its own."""
+    arm, known = arm_at_work(piece["board"], piece["seed"])
+    rows = []
+    for moment in range(piece["trials"]):
+        begin(arm)
+        for name, inject in slow_lies().items():
+            if name in piece.get("faults", slow_lies()):
+                trial = in_a_copy(partial(suffer, arm, inject, moment % 4, PATIENCE_S))
+                rows.append(count(piece["board"], name, known, trial))
+    return rows
+
+
+def pieces(share: float) -> list[Piece]:
+    return [piece for board in BOARDS for piece in split(MOMENTS, share, PER_PIECE, board=board)]
+
+
+PART = Part(
+    "lies",
+    "Slow lies, and two faults at once",
+    f"""Nothing is promised here, so nothing counts as a violation: the board finds these lies late or never. Boards,
+        arm, motions and controllers are those of the faults above, with {MOMENTS} moments, half of them with the tuned
+        controllers and the numbers of travel that `tune` works out, and {PATIENCE_S:g} s from each. `rad` is the
+        greatest way by which the true error has grown until the motors were off or the time was over; "{FAR}" counts
+        the trials with more. Part of that is the lag of a follower with nothing wrong, see the first rows. A reading
+        that drifts, or loses gain slowly, is followed: friction hides the voltage which that takes, so the error is
+        what the reading is wrong by. A reading that comes late, or turns too little, lets the joint overshoot. A joint
+        whose frozen reading holds it back stands still, but with its motor reversed too, what should hold it against
+        gravity drives it. Where this matters, keep the emergency stop at hand, and look at the arm.""",
+    (*faults.PART.depends, "tools/attack/slow_lies.py", "tools/attack/parts/faults.py"),
+    pieces,
+    run,
+)
