@@ -115,6 +115,7 @@ def test_a_comment_keeps_its_own_commas_and_quotes(tmp_path: Path) -> None:
             "line 3: 1 value where 2 columns are named: 'here I pushed'; a comment",
         ),
         ("time_s,a\n0,1\n# x\n\n# y\n1,z\n", "line 6, column a: 'z' is not a number"),
+        (f'"# {"x" * 200_000}",\ntime_s,a\n0,1\n', "line 1: not valid CSV: field larger than field limit"),
         ("time_s,a\n0,1\n1", "line 3: the file ends in the middle of this line"),
         (b"time_s,a\n0,\xff\n", "byte 11 is not UTF-8"),
     ],

@@ -21,7 +21,10 @@ def comment_in(line: str) -> str | None:
     if text.startswith('"#'):
         behind = re.sub(r'^"([^"]|"")*"', "", text)
         separator = behind[0] if behind[:1] in SEPARATORS and behind else ","
-        text = separator.join(next(csv.reader([text], delimiter=separator), []))
+        try:
+            text = separator.join(next(csv.reader([text], delimiter=separator), []))
+        except csv.Error:  # a monstrous cell: what reads the column names refuses it
+            return None
     return text.rstrip(_BEHIND)[1:].strip() if text.startswith("#") else None
 
 
