@@ -169,7 +169,7 @@ def test_chance_decides_whether_a_model_is_worse() -> None:
     assert [one.is_as_good for one in (near, worse, better)] == [True, False, False]
     assert [one.is_worse for one in (near, worse, better)] == [False, True, False]
     assert warnings_of([near, better]) == []
-    assert "by more than chance explains (2.4 against 2 rad²)" in warnings_of([worse])[0]
+    assert "by more than chance excuses (2.4 against 2 rad²)" in warnings_of([worse])[0]
 
 
 @pytest.mark.parametrize("chance", [2.5, 50.0, 1e6])

@@ -246,7 +246,7 @@ def warnings_of(verdicts: Sequence[LogVerdict]) -> list[str]:
         if verdict.is_worse:
             sentences.append(
                 f"{verdict.name} ({verdict.role}): the model is worse than the arm file that it began with, by more "
-                f"than chance explains ({sum(verdict.model):.3g} against {sum(verdict.white_box):.3g} rad²)."
+                f"than chance excuses ({sum(verdict.model):.3g} against {sum(verdict.white_box):.3g} rad²)."
             )
     usual = [verdict for verdict in verdicts if verdict.role != CHANGED]
     changed = [verdict for verdict in verdicts if verdict.role == CHANGED]

@@ -154,7 +154,7 @@ def doubt_validation(facts: Identification) -> Iterator[Doubt]:
     worst = min(poor, key=lambda verdict: verdict.improvement)
     learnt = ", though on others it is not: it may have learnt its controller, not the arm"
     yield Doubt(
-        f"on {worst.name} ({worst.role}) it is worse than the arm file it began with, by more than chance explains "
+        f"on {worst.name} ({worst.role}) it is worse than the arm file it began with, by more than chance excuses "
         f"({sum(worst.model):.3g} against {sum(worst.white_box):.3g} rad²){learnt if len(poor) < len(others) else ''}",
         "check supply, directions and controller files, record livelier motion and identify again",
     )
