@@ -12,6 +12,8 @@ from greywhale.base.errors import UserError
 from greywhale.files.leader import load_leader
 from greywhale.files.log import read_log
 from greywhale.files.log.layout import HEADING
+from greywhale.files.log.parameters import lines_of
+from greywhale.protocol.table import ParameterTable
 
 MOTION = "time_s,leader_0,leader_1,leader_2,leader_3\n"
 FACTS = "# every_ticks: 1\n# dropped_samples: 0\n"
@@ -103,9 +105,21 @@ def test_degrees_in_a_log_are_named(tmp_path: Path, angle: float, words: str) ->
         read_log(write_log(tmp_path, MS, angle=angle))
 
 
-@pytest.mark.parametrize("angle", [0.5, 3.0, 7.9])
-def test_angles_of_an_arm_of_several_turns_are_no_degrees(tmp_path: Path, angle: float) -> None:
-    assert np.abs(read_log(write_log(tmp_path, MS, angle=angle)).leader).max() == pytest.approx(angle, rel=1e-3)
+@pytest.mark.parametrize(("angle", "doubted"), [(0.5, False), (3.0, False), (5.0, True), (7.9, True)])
+def test_more_than_half_a_turn_is_doubted_where_nothing_tells_the_scale(
+    tmp_path: Path, angle: float, doubted: bool
+) -> None:
+    """An arm of several turns is read all the same."""
+    log = read_log(write_log(tmp_path, MS, angle=angle))
+    assert np.abs(log.leader).max() == pytest.approx(angle, rel=1e-3)
+    assert (
+        f"log.csv: its angles reach {angle:g} rad, more than half a turn; are they in degrees?" in log.remarks[-1]
+    ) is doubted
+
+
+def test_a_log_with_its_parameters_is_not_doubted(tmp_path: Path) -> None:
+    facts = "".join(f"# {line}\n" for line in lines_of(ParameterTable.defaults()))
+    assert not any("degrees" in remark for remark in read_log(write_log(tmp_path, MS, facts, angle=7.9)).remarks)
 
 
 def test_millivolts_are_named(tmp_path: Path) -> None:

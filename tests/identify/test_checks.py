@@ -34,6 +34,10 @@ def milliseconds(log: Log) -> Log:
     return replace(log, time=1000.0 * log.time, origin=replace(log.origin, period_ms=None))
 
 
+def minutes(log: Log) -> Log:
+    return replace(log, time=log.time / 60.0, origin=replace(log.origin, period_ms=None))
+
+
 def short(log: Log) -> Log:
     return rows(log, slice(2000))
 
@@ -107,6 +111,7 @@ def three_of_four_at_rest(log: Log) -> Log:
         (barely_powered, r"only 2\.0 s of it"),
         (three_of_four_at_rest, r"joint 0 had 0 V in every row, while its leader moved by \d.* rad and its follower"),
         (milliseconds, r"its rows are 1 s apart, but at most 0\.1 s show .* is time_s in ms\?"),
+        (minutes, r"only 0\.0 s of it .* apart, which no measure .* is time_s in min\?"),
         (short, r"only 2\.0 s of it .* at least 4 s"),
         (still, r"no joint moved: joints 0\.\.3 stayed within 0\.\d+, .* rad"),
         (clipped, r"joint 2 is clipped: its follower reads exactly 2\.5000 rad in \d+ %"),

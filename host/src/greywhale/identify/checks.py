@@ -12,6 +12,7 @@ from greywhale.arm import ArmParameters
 from greywhale.base.errors import UserError
 from greywhale.base.types import Floats
 from greywhale.files.log.driven import MOTION_RAD, tell_off, tell_undriven
+from greywhale.files.log.units import doubt_spacing
 from greywhale.identify.data import Prepared, rows_in
 from greywhale.protocol.firmware import JOINTS
 from greywhale.protocol.table import ParameterTable
@@ -42,9 +43,10 @@ def check(prepared: Prepared, arm: ArmParameters, table: ParameterTable | None) 
         )
     seconds = sum(run.period * (run.stop - run.start - 1) for run in prepared.runs)
     if seconds < SHORTEST_S:
+        remedy = next(iter(doubt_spacing(log.time)), "record longer.")
         raise UserError(
             f"{log.name}: only {seconds:.1f} s of it can be used (motors following, no gap), but at least "
-            f"{SHORTEST_S:g} s are needed; record longer."
+            f"{SHORTEST_S:g} s are needed; {remedy}"
         )
     leader, follower, voltage = log.leader[used], log.follower[used], log.voltage[used]
     if not prepared.moving.any():

@@ -17,7 +17,7 @@ from greywhale.files.log.check import Check, add_rows, facts_of
 from greywhale.files.log.condition import Condition, judge_condition
 from greywhale.files.log.layout import COLUMNS, COMPLETE, ENDINGS, STATES, TITLE, UNFINISHED, Origin
 from greywhale.files.log.parameters import table_in
-from greywhale.files.log.units import perhaps_degrees, refuse_other_spacing
+from greywhale.files.log.units import doubt_angles, perhaps_degrees, refuse_other_spacing
 from greywhale.protocol.firmware import JOINTS
 from greywhale.protocol.joints import ALL, Joints, parse
 from greywhale.protocol.table import ParameterTable
@@ -87,6 +87,10 @@ def read_log(path: str | Path) -> Log:
         file.require_rows(columns.rows, 2)
     _refuse_other_period(str(path), origin, columns)
     refuse_other_times(str(path), facts, columns.time[: columns.rows])
+    condition = judge_condition(str(path), facts, crc, columns.time[: columns.rows])
+    if origin.table is None:
+        odd = doubt_angles(columns.leader[: columns.rows], columns.follower[: columns.rows])
+        condition = replace(condition, remarks=condition.remarks + odd)
     return Log(
         name=str(path),
         origin=origin,
@@ -98,7 +102,7 @@ def read_log(path: str | Path) -> Log:
         dropped=dropped,
         complete=ending == COMPLETE,
         ended_by=facts.get("ended_by", ""),
-        condition=judge_condition(str(path), facts, crc, columns.time[: columns.rows]),
+        condition=condition,
     )
 
 

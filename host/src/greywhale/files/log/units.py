@@ -19,6 +19,8 @@ _CLOSE = 1.05
 USUAL_S = (2e-4, 0.2)
 # A motion of more than this (rad) that never exceeds this speed (rad/s) is a thousandth of what a hand does.
 _MOTION_RAD, _CREEP_RAD_S = 0.1, 0.02
+# Few joints turn further than this from their zero, rad.
+_HALF_TURN_RAD = 3.15
 # Angles beyond a turn are degrees rather than rad, if they are below this.
 _TURN_RAD, _MOST_DEG = 6.3, 1000.0
 
@@ -59,6 +61,14 @@ def doubt_speed(time_s: Floats, angles: Floats) -> tuple[str, ...]:
     if fastest >= _CREEP_RAD_S:
         return ()
     return (f"it takes {time_s[-1] - time_s[0]:.4g} s and never exceeds {fastest:.2g} rad/s; is time_s in ms?",)
+
+
+def doubt_angles(*angles: Floats) -> tuple[str, ...]:
+    """The same for a log that does not say how its potentiometers are scaled, (rows, joints) rad each."""
+    largest = max(float(max(one.max(), -one.min())) for one in angles)
+    if largest <= _HALF_TURN_RAD:
+        return ()
+    return (f"its angles reach {largest:.3g} rad, more than half a turn; are they in degrees?",)
 
 
 def perhaps_degrees(largest: float) -> str:
