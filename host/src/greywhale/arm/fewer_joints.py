@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from greywhale.arm.parameters import JOINT_NAMES
-from greywhale.arm.urdf import Body, TurningJoint
+from greywhale.arm.urdf_joint import Body, TurningJoint
 from greywhale.base.errors import BadUsage, cut
 from greywhale.base.types import Floats
 
@@ -59,4 +59,4 @@ def complete(path: Path, joints: list[TurningJoint]) -> list[TurningJoint]:
 def _idle(point: Floats, axis: Floats, along: Floats) -> TurningJoint:
     body = Body()
     body.add("", NOTHING_KG, point + 0.5 * SHORTEST_M * along, NOTHING_KG_M2 * np.eye(3))
-    return TurningJoint("", point, axis, -1.0, 1.0, math.nan, math.nan, math.nan, body)
+    return TurningJoint("", point, axis, -1.0, 1.0, 0.0, 0.0, math.nan, math.nan, body)

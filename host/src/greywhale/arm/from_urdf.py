@@ -6,15 +6,19 @@ greywhale's own zero pose has all links stretched out level. `Imported` says whe
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from greywhale.arm.fewer_joints import UP, complete
+from greywhale.arm.judge_urdf import doubts, require_masses, require_reach
 from greywhale.arm.parameters import JOINT_NAMES, ArmParameters
-from greywhale.arm.urdf import Body, TurningJoint, read_chain
+from greywhale.arm.summary import Summary, summarise
+from greywhale.arm.urdf import read_chain
+from greywhale.arm.urdf_joint import Body, TurningJoint
+from greywhale.arm.urdf_motor import joint_table, remarks_on, with_guessed_motors
 from greywhale.base.errors import BadUsage, UserError, cut
 from greywhale.base.formats import toml_file
 from greywhale.base.types import Floats
@@ -25,17 +29,20 @@ BESIDE_M = 1e-3  # axes that shall meet may pass each other so far
 ASIDE_SHARE, ASIDE_M = 0.15, 5e-3  # of a link's length, a centre of mass beside the link
 SHORTEST_M = 1e-3
 ROUNDING_M = 1e-9
-GUESSED_INERTIA = (0.02, 0.03, 0.015, 0.005)  # kg m² at the joint, of motor and gears: a URDF does not say
 
 
 @dataclass(frozen=True)
 class Imported:
-    """An arm, and q = sign x (URDF's angle) + offset (rad) for each joint; `remarks`: what was left out or guessed."""
+    """An arm, and q = sign x (URDF's angle) + offset (rad) for each joint; `remarks`: what was left out or guessed.
+
+    `summary` is what the arm can lift and how fast it is, with a warning for each thing that will not do.
+    """
 
     arm: ArmParameters
     signs: Floats
     offsets: Floats
     remarks: tuple[str, ...]
+    summary: Summary
 
 
 @dataclass(frozen=True)
@@ -59,27 +66,34 @@ def import_urdf(path: Path, supply_v: float) -> Imported:
         if joint.body.mass <= 0.0:
             raise _empty(path, joint.body, "mass")
     joints = complete(path, joints)
+    require_reach(path, joints[:used])
     frames = _find_frames(path, joints)
     signs, offsets = _angles(joints, frames)
     remarks: list[str] = []
     links = [_link(path, number, joints[number], frames, remarks) for number in range(len(joints))]
-    data: dict[str, Any] = {
-        "name": name,
-        "source": path.name,
-        "link": links,
-        "joint": [
-            _joint(number, joint, signs[number], offsets[number], supply_v, remarks)
+
+    def build(joints: list[TurningJoint]) -> ArmParameters:
+        tables = [
+            joint_table(number, joint, signs[number], offsets[number], supply_v)
             if number < used
             else {"name": JOINT_NAMES[number], "fixed": True}
             for number, joint in enumerate(joints)
-        ],
-        "drive": {"supply": supply_v},
-    }
-    try:
-        arm = toml_file.check(data, ArmParameters, str(path))
-    except UserError as error:
-        raise BadUsage(error.message) from None
-    return Imported(arm, signs, offsets, tuple(remarks))
+        ]
+        data = {"name": name, "source": path.name, "link": links, "joint": tables, "drive": {"supply": supply_v}}
+        try:
+            return toml_file.check(data, ArmParameters, str(path))
+        except UserError as error:
+            raise BadUsage(error.message) from None
+
+    undriven = build(joints)
+    require_masses(path, joints[:used])
+    driven = with_guessed_motors(joints, undriven)
+    for number, pair in enumerate(zip(joints[:used], driven, strict=False)):
+        remarks += remarks_on(number, *pair, signs[number], offsets[number])
+    arm = build(driven)
+    summary = summarise(arm)
+    warnings = (*summary.warnings, *doubts(driven[:used], summary.joints))
+    return Imported(arm, signs, offsets, tuple(remarks), replace(summary, warnings=warnings))
 
 
 def _find_frames(path: Path, joints: list[TurningJoint]) -> _Frames:
@@ -181,7 +195,20 @@ def _link(path: Path, number: int, joint: TurningJoint, frames: _Frames, remarks
     if products > 0.02:
         share = f"{100 * products:.0f} % of the largest moment"
         remarks.append(f"products of inertia of {cut(body.names[0])} were left out ({share})")
-    return _table(body, length, min(max(reach, 0.0), length), np.diag(inertia))
+    return _table(body, length, min(max(reach, 0.0), length), _rounded(body, np.diag(inertia).copy(), remarks))
+
+
+def _rounded(body: Body, moments: Floats, remarks: list[str]) -> Floats:
+    """Moments that a body may have, where rounded digits make one a little more than the two others together."""
+    largest = int(np.argmax(moments))
+    rest = float(np.delete(moments, largest).sum())
+    if moments[largest] > rest:
+        remarks.append(
+            f"a moment of inertia of {cut(body.names[0])} was made {100 * (1 - rest / moments[largest]):.2g} % less, "
+            "as no body has one that is more than the two others together"
+        )
+        moments[largest] = rest
+    return moments
 
 
 def _empty(path: Path, body: Body, what: str) -> UserError:
@@ -198,31 +225,3 @@ def _axes(number: int, along: Floats, pitch: Floats) -> Floats:
 def _table(body: Body, length: float, centre: float, inertia: Floats) -> dict[str, Any]:
     xx, yy, zz = map(float, inertia)
     return {"mass": body.mass, "length": length, "centre": centre, "inertia": {"xx": xx, "yy": yy, "zz": zz}}
-
-
-def _joint(
-    number: int, joint: TurningJoint, sign: float, offset: float, supply_v: float, remarks: list[str]
-) -> dict[str, Any]:
-    """Motor and friction at the joint itself (gear ratio 1): half the damping is the motor's, half its own."""
-    if not (joint.effort > 0.0 and joint.velocity > 0.0):
-        raise BadUsage(
-            f"joint {cut(joint.name)} has no effort or velocity limit above 0, from which its motor would follow; add "
-            'them: <limit effort="N m" velocity="rad/s" .../>.'
-        )
-    torque_per_volt = joint.effort / supply_v
-    damping = joint.effort / joint.velocity
-    friction = 0.0 if math.isnan(joint.friction) else max(joint.friction, 0.0)
-    ends = sorted(sign * end + offset for end in (joint.low, joint.high))
-    remarks.append(f"the inertia of the {JOINT_NAMES[number]}'s motor is a guess, {GUESSED_INERTIA[number]:g} kg m2")
-    return {
-        "name": JOINT_NAMES[number],
-        "motor": {
-            "inertia": GUESSED_INERTIA[number],
-            "resistance": 0.5 * damping / torque_per_volt**2,
-            "torque_constant": 0.5 * damping / torque_per_volt,
-            "viscous": 0.5 * damping,
-            "gear_ratio": 1.0,
-        },
-        "friction": {"coulomb": friction, "breakaway": friction},
-        "stops": {"min": max(ends[0], -math.tau), "max": min(ends[1], math.tau)},
-    }

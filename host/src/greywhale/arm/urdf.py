@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from collections import Counter
 from pathlib import Path
 from xml.etree import ElementTree as xml
 
 import numpy as np
 
+from greywhale.arm.judge_urdf import why_no_body
+from greywhale.arm.urdf_joint import Body, TurningJoint
 from greywhale.base.errors import BadUsage, UserError, cut, os_reason
 from greywhale.base.types import Floats
 
@@ -16,47 +18,10 @@ LARGEST = 4 << 20  # bytes
 HEAVIEST_KG = 1e4
 FURTHEST = 1e6  # m or rad; what lies beyond would only overflow
 TURNING = ("revolute", "continuous")
+FULL_TURNS = 2.0 * math.tau  # rad: limits beyond, to either side, are in degrees
+_XACRO = "xacro}"  # how its elements' names go on after the address of their namespace
+_CORRECT = "correct it"
 _ELSEWHERE = "choose another description of the arm, or write arm.toml by hand (docs/arm.md)"
-
-
-@dataclass
-class Body:
-    """Links that move as one: mass (kg), centre of mass (3,) m, inertia (3, 3) kg m² about it, axes of the base."""
-
-    names: list[str] = field(default_factory=list)
-    mass: float = 0.0
-    centre: Floats = field(default_factory=lambda: np.zeros(3))
-    inertia: Floats = field(default_factory=lambda: np.zeros((3, 3)))
-
-    def add(self, name: str, mass: float, centre: Floats, inertia: Floats) -> None:
-        """Weld a link to it."""
-        self.names.append(name)
-        if mass <= 0.0:
-            return
-        both = self.mass + mass
-        middle = (self.mass * self.centre + mass * centre) / both
-        self.inertia = (
-            self.inertia + _parallel(self.mass, self.centre - middle) + inertia + _parallel(mass, centre - middle)
-        )
-        self.mass, self.centre = both, middle
-
-
-@dataclass(frozen=True)
-class TurningJoint:
-    """A joint that turns: a point on its axis and the axis (3,), in the base's frame; the body that it moves.
-
-    `low` and `high` are its limits (rad), `effort` (N m), `velocity` (rad/s) and `friction` (N m), NaN where not given.
-    """
-
-    name: str
-    point: Floats
-    axis: Floats
-    low: float
-    high: float
-    effort: float
-    velocity: float
-    friction: float
-    body: Body
 
 
 def read_chain(path: Path) -> tuple[str, list[TurningJoint]]:
@@ -71,16 +36,40 @@ def read_chain(path: Path) -> tuple[str, list[TurningJoint]]:
     try:
         robot = xml.fromstring(content)
     except (xml.ParseError, ValueError, LookupError) as error:
+        if b"<xacro:" in content:  # its namespace is not declared
+            raise _is_xacro(path, "<xacro:...>") from None
         raise BadUsage(f"{path}: this is no XML: {error}; give a URDF (run xacro first).") from None
+    if robot.tag == "mujoco":
+        raise BadUsage(f"{path}: this is MJCF, the format of MuJoCo; give the URDF that it was made from.")
     if robot.tag != "robot":
         raise BadUsage(f"{path}: it begins with <{cut(robot.tag)}>, not with <robot>; give a URDF.")
+    _refuse_xacro(path, robot)
     return robot.get("name", path.stem), _Reader(path, robot).joints()
+
+
+def _refuse_xacro(path: Path, robot: xml.Element) -> None:
+    """What xacro has yet to compute. A declared namespace is no sign of it: xacro leaves that in what it makes."""
+    for tag in robot.iter():
+        name = str(tag.tag)  # a comment's is a function
+        if _XACRO in name:
+            raise _is_xacro(path, f"<xacro:{cut(name.partition('}')[2])}>")
+        for key, text in tag.attrib.items():
+            if "${" in text or "$(" in text:
+                raise _is_xacro(path, f"{cut(repr(text))} as {cut(key)} of <{cut(name)}>")
+
+
+def _is_xacro(path: Path, sign: str) -> UserError:
+    return BadUsage(
+        f"{path}: this is xacro, from which a URDF is made: it has {sign}; run `xacro {path} -o arm.urdf`, and import "
+        "arm.urdf."
+    )
 
 
 class _Reader:
     def __init__(self, path: Path, robot: xml.Element) -> None:
         self.path = path
         self.links = {self._name(link, "link"): link for link in robot.findall("link")}
+        self._refuse_twins(robot)
         self.after: dict[str, list[xml.Element]] = {name: [] for name in self.links}
         children = set()
         for joint in robot.findall("joint"):
@@ -93,6 +82,13 @@ class _Reader:
         if len(roots) != 1:
             raise self._bad(f"{len(roots)} links have no parent, instead of one base")
         self.root = roots[0]
+
+    def _refuse_twins(self, robot: xml.Element) -> None:
+        for kind in ("link", "joint"):
+            names = Counter(self._name(tag, kind) for tag in robot.findall(kind))
+            for name, count in names.items():
+                if count > 1:
+                    raise self._bad(f"{count} {kind}s are called {cut(name)}", "give each a name of its own")
 
     def joints(self) -> list[TurningJoint]:
         found: list[TurningJoint] = []
@@ -127,7 +123,10 @@ class _Reader:
             body.add(link, 0.0, np.zeros(3), np.zeros((3, 3)))
         else:
             own = frame @ self._origin(inertial)
-            turned = own[:3, :3] @ self._inertia(inertial, link) @ own[:3, :3].T
+            inertia = self._inertia(inertial, link)
+            if reason := why_no_body(inertia):
+                raise self._bad(f"link {cut(link)} is no possible body: {reason}", _CORRECT)
+            turned = own[:3, :3] @ inertia @ own[:3, :3].T
             mass = self._number(inertial.find("mass"), "value", link)
             if not 0.0 <= mass <= HEAVIEST_KG:
                 raise self._bad(f"the mass of link {cut(link)} is {mass:g} kg")
@@ -141,19 +140,53 @@ class _Reader:
         if not np.linalg.norm(axis) > 1e-9:
             raise self._bad(f"joint {cut(name)} has no axis")
         world = frame[:3, :3] @ axis / np.linalg.norm(axis)
+        if joint.find("mimic") is not None:
+            raise self._bad(f"joint {cut(name)} follows another one (<mimic>), and has no motor of its own")
         limit, dynamics = joint.find("limit"), joint.find("dynamics")
         turns_for_ever = kind == "continuous"
+        low, high = (-math.tau, math.tau) if turns_for_ever else self._limits(limit, name)
         return TurningJoint(
             name=name,
             point=frame[:3, 3],
             axis=world,
-            low=-math.tau if turns_for_ever else self._number(limit, "lower", name, 0.0),
-            high=math.tau if turns_for_ever else self._number(limit, "upper", name, 0.0),
-            effort=self._number(limit, "effort", name, math.nan),
-            velocity=self._number(limit, "velocity", name, math.nan),
-            friction=self._number(dynamics, "friction", name, math.nan),
+            low=low,
+            high=high,
+            effort=self._effort(limit, "effort", name, turns_for_ever),
+            velocity=self._effort(limit, "velocity", name, turns_for_ever),
+            friction=self._not_below_0(dynamics, "friction", name),
+            damping=self._not_below_0(dynamics, "damping", name),
             body=body,
+            endless=turns_for_ever,
         )
+
+    def _limits(self, limit: xml.Element | None, name: str) -> tuple[float, float]:
+        """The lower and the upper one (rad). They are never exchanged: the axis may be what is wrong."""
+        low, high = self._number(limit, "lower", name, 0.0), self._number(limit, "upper", name, 0.0)
+        told = f"joint {cut(name)} has its lower limit at {low:g} rad and its upper one at {high:g} rad"
+        if low > high:
+            raise self._bad(told, "exchange the two if that is meant, and look whether its axis points the right way")
+        if low == high:
+            raise self._bad(f"{told}, so it cannot turn", "give its limits, or make it fixed")
+        if max(-low, high) > FULL_TURNS:
+            raise self._bad(f"{told}; limits are in rad, and these look like degrees", _CORRECT)
+        return low, high
+
+    def _effort(self, limit: xml.Element | None, key: str, name: str, optional: bool) -> float:
+        """Effort or velocity; 0 where it is not known, as those write it who do not know it."""
+        value = self._not_below_0(limit, key, name)
+        if math.isnan(value) and not optional:
+            raise self._bad(
+                f"joint {cut(name)} has no effort or velocity limit, from which its motor would follow",
+                'add them: <limit effort="N m" velocity="rad/s" .../>, or 0 for a guess',
+            )
+        return 0.0 if math.isnan(value) else value
+
+    def _not_below_0(self, tag: xml.Element | None, key: str, name: str) -> float:
+        """NaN where it is not given."""
+        value = self._number(tag, key, name, math.nan)
+        if value < 0.0:
+            raise self._bad(f"{key} of joint {cut(name)} is {value:g}, but it must not be below 0", _CORRECT)
+        return value
 
     def _inertia(self, inertial: xml.Element, link: str) -> Floats:
         tag = inertial.find("inertia")
@@ -168,6 +201,9 @@ class _Reader:
         frame = np.eye(4)
         frame[:3, 3] = self._vector(tag, "xyz", where, (0.0, 0.0, 0.0))
         roll, pitch, yaw = self._vector(tag, "rpy", where, (0.0, 0.0, 0.0))
+        if max(abs(roll), abs(pitch), abs(yaw)) > FULL_TURNS:
+            told = f"rpy of {cut(where)} is {roll:g} {pitch:g} {yaw:g}"
+            raise self._bad(f"{told}; angles are in rad, and these look like degrees", _CORRECT)
         frame[:3, :3] = _turn(2, yaw) @ _turn(1, pitch) @ _turn(0, roll)
         return frame
 
@@ -212,8 +248,8 @@ class _Reader:
             raise self._bad(f"the {end} of joint {cut(self._name(joint, 'joint'))} is no link")
         return name
 
-    def _bad(self, what: str) -> UserError:
-        return BadUsage(f"{self.path}: {what}; {_ELSEWHERE}.")
+    def _bad(self, what: str, remedy: str = _ELSEWHERE) -> UserError:
+        return BadUsage(f"{self.path}: {what}; {remedy}.")
 
 
 def _turn(axis: int, angle: float) -> Floats:
@@ -222,8 +258,3 @@ def _turn(axis: int, angle: float) -> Floats:
     turn[one, one] = turn[other, other] = math.cos(angle)
     turn[other, one], turn[one, other] = math.sin(angle), -math.sin(angle)
     return turn
-
-
-def _parallel(mass: float, away: Floats) -> Floats:
-    """What a mass adds to an inertia about a point so far from it (Steiner)."""
-    return mass * (float(away @ away) * np.eye(3) - np.outer(away, away))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, TypedDict
+from typing import Annotated
 
 import click
 import numpy as np
@@ -15,6 +15,7 @@ from greywhale.base.formats.whole import refuse_inputs, write_text
 from greywhale.base.types import PerJoint
 from greywhale.cli.arm_match import match
 from greywhale.cli.arm_new import new
+from greywhale.cli.arm_table import Lifting, lifting, notes, table
 from greywhale.cli.group import Group
 from greywhale.cli.output import FILE, json_option, option, overwrite_option, show
 from greywhale.files.model import arm_toml
@@ -23,7 +24,7 @@ from greywhale.files.outputs import require_new
 SUPPLY_V = (1.0, 60.0)
 
 
-class ImportAnswer(TypedDict):
+class ImportAnswer(Lifting):
     written: str  # the file
     signs: PerJoint[Annotated[int, ("enum", [1, -1])]]
     offsets_rad: PerJoint[float]
@@ -48,9 +49,10 @@ command.add_command(match)
 def import_(urdf: Path, out: Path, supply: float, overwrite: bool, as_json: bool) -> None:
     """Read a URDF: a yaw, two parallel pitches and a roll along the last link; a chain may end earlier.
 
-    Frames and zero pose may be any; fixed joints are welded. What this arm cannot have is refused by its name. A URDF
-    says nothing about gears, and its motors only by their effort and velocity limits: `greywhale identify` finds what
-    they really are.
+    Frames and zero pose may be any; fixed joints are welded. What this arm or no body can have is refused by its name,
+    and so are other units than m, kg, rad and N m where the numbers tell. It shows what the arm can lift and how fast
+    it is. A URDF says nothing about gears, and its motors only by their effort and velocity limits, where 0 asks for a
+    guess: `greywhale identify` finds what they really are.
     """
     if not SUPPLY_V[0] <= supply <= SUPPLY_V[1]:
         raise BadUsage(f"--supply is {supply:g} V; it must be {SUPPLY_V[0]:g} to {SUPPLY_V[1]:g}.")
@@ -64,6 +66,7 @@ def import_(urdf: Path, out: Path, supply: float, overwrite: bool, as_json: bool
 def _facts(out: Path, found: Imported) -> ImportAnswer:
     return {
         "written": str(out),
+        **lifting(found.summary),
         "signs": [int(sign) for sign in found.signs],
         "offsets_rad": [round(float(offset), 6) for offset in found.offsets],
         "remarks": list(found.remarks),
@@ -71,7 +74,7 @@ def _facts(out: Path, found: Imported) -> ImportAnswer:
 
 
 def _text(out: Path, found: Imported) -> str:
-    lines = [f"{out}: {found.arm.name}.", "greywhale's angles, from those of the URDF (degrees):"]
+    lines = [*table(found.arm, found.summary), "", "greywhale's angles, from those of the URDF (degrees):"]
     offsets = np.degrees(found.offsets)
     for joint, name in enumerate(JOINT_NAMES):
         if joint not in found.arm.joints_in_use:
@@ -79,4 +82,5 @@ def _text(out: Path, found: Imported) -> str:
             continue
         sign, offset = found.signs[joint], offsets[joint]
         lines.append(f"  {name:16}{'-' if sign < 0 else ' '}q {offset:+.1f}")
-    return "\n".join([*lines, *(f"Note: {remark}." for remark in found.remarks)])
+    remarks = [f"Note: {remark}." for remark in found.remarks]
+    return "\n".join([*lines, *notes(found.summary), *remarks, "", f"{out} is written."])

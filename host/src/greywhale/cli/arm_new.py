@@ -7,41 +7,24 @@ import itertools
 import sys
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Annotated, TypedDict
 
 import click
-import numpy as np
 
 from greywhale.arm.make import Summary, assemble, summarise
 from greywhale.arm.make.answers import Answer, answers_toml, read_answers
 from greywhale.arm.make.explain import explain
 from greywhale.arm.make.questions import Answers, Question, collect
-from greywhale.arm.parameters import JOINT_NAMES, ArmParameters
+from greywhale.arm.parameters import ArmParameters
 from greywhale.base.errors import UserError, counted
 from greywhale.base.formats.whole import refuse_inputs, write_text
+from greywhale.cli.arm_table import Lifting, lifting, notes, table
 from greywhale.cli.output import FILE, json_option, option, overwrite_option, show, tell
 from greywhale.files.model import arm_toml
 from greywhale.files.outputs import require_new
-from greywhale.protocol.table import ParameterTable
-
-MUCH_TO_HOLD = 0.6  # of stall_volts: the rest is for starting
 
 
-class JointFacts(TypedDict):
-    joint: int
-    gravity_nm: float  # the largest torque of gravity
-    stall_nm: float  # the motor's torque at standstill
-    no_load_speed_rad_s: float
-    hold_v: float  # holds the worst pose
-    holds_without_power: bool
-
-
-class NewAnswer(TypedDict):
+class NewAnswer(Lifting):
     written: str  # the file
-    mass_kg: float
-    joints: Annotated[list[JointFacts], ("minItems", 1), ("maxItems", 4)]  # in use
-    warnings: list[str]
-    before_it_moves: str  # what to do; empty where nothing
     left_out: list[str]  # answers that were taken as usual
 
 
@@ -69,7 +52,7 @@ def new(answers: Path | None, out: Path, overwrite: bool, as_json: bool) -> None
         arm = assemble(given)
     found = summarise(arm)
     write_text(out, arm_toml(arm, "Made by greywhale arm new."))
-    text = [*_table(arm, found), *_notes(found, left_out), ""] if answers is not None else []
+    text = [*table(arm, found), *notes(found, left_out), ""] if answers is not None else []
     show(as_json, _facts(out, found, left_out), "\n".join([*text, f"{out} is written."]))
 
 
@@ -78,7 +61,7 @@ def _agreed(person: Person, out: Path) -> ArmParameters:
     while True:
         arm = assemble(person.answers())
         found = summarise(arm)
-        tell("\n".join(["", *_table(arm, found), *_notes(found, ()), ""]))
+        tell("\n".join(["", *table(arm, found), *notes(found), ""]))
         try:
             person.confirm(f"Write {out}?", f"{out} was not written.")
         except Back:
@@ -178,55 +161,5 @@ def _asked(question: Question) -> str:
     return f"{question.text}{', ' if question.unit.name else ''}{question.unit.name} [{usual}]"
 
 
-def _table(arm: ArmParameters, found: Summary) -> list[str]:
-    lines = [f"{arm.name}: {found.mass:.3g} kg, motors at {arm.drive.supply:g} V.", ""]
-    lines.append(f"{'':16}{'gravity, at most':>18}{'motor at standstill':>21}{'share':>8}{'fastest':>14}")
-    for one in found.joints:
-        lines.append(
-            f"{JOINT_NAMES[one.joint]:16}{one.gravity:>14.3g} N m{one.stall:>17.3g} N m{100 * one.share:>6.0f} %"
-            f"{np.degrees(one.no_load_speed):>8.0f} deg/s"
-        )
-    return lines
-
-
-def _notes(found: Summary, left_out: tuple[str, ...]) -> list[str]:
-    notes = [f"Warning: {warning}" for warning in found.warnings]
-    if advice := _advice(found):
-        notes.append(f"Before it moves: {advice}")
-    if left_out:
-        notes.append(f"Note: the file leaves out {len(left_out)} answers, taken as usual: {', '.join(left_out)}.")
-    return ["", *notes] if notes else []
-
-
-def _advice(found: Summary) -> str:
-    """What a board as shipped needs for an arm whose motors have much to hold; "" where it needs nothing."""
-    hold = max(one.hold_v for one in found.joints)
-    shipped = ParameterTable.defaults().physical("stall_volts")
-    if hold <= MUCH_TO_HOLD * shipped or any(one.share >= 1.0 for one in found.joints):
-        return ""
-    return (
-        f"a joint needs {hold:.1f} V to hold still, and the board holds a joint back that has more than stall_volts "
-        f"({shipped:g} V) without motion: run `greywhale params set stall_volts={np.ceil(1.5 * hold):.0f}`."
-    )
-
-
 def _facts(out: Path, found: Summary, left_out: tuple[str, ...]) -> NewAnswer:
-    joints: list[JointFacts] = [
-        {
-            "joint": one.joint,
-            "gravity_nm": round(one.gravity, 6),
-            "stall_nm": round(one.stall, 6),
-            "no_load_speed_rad_s": round(one.no_load_speed, 6),
-            "hold_v": round(one.hold_v, 4),
-            "holds_without_power": one.holds,
-        }
-        for one in found.joints
-    ]
-    return {
-        "written": str(out),
-        "mass_kg": round(found.mass, 6),
-        "joints": joints,
-        "warnings": list(found.warnings),
-        "before_it_moves": _advice(found),
-        "left_out": list(left_out),
-    }
+    return {"written": str(out), **lifting(found), "left_out": list(left_out)}

@@ -3,6 +3,6 @@
 from __future__ import annotations
 
 from greywhale.arm.make.assemble import assemble
-from greywhale.arm.make.summary import Summary, summarise
+from greywhale.arm.summary import Summary, summarise
 
 __all__ = ["Summary", "assemble", "summarise"]

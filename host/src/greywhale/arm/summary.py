@@ -28,6 +28,9 @@ class JointSummary:
 
     @property
     def share(self) -> float:
+        """Of the motor's torque that gravity takes; without end where friction leaves the motor none."""
+        if self.stall <= 0.0:
+            return math.inf if self.gravity > 0.0 else 0.0
         return self.gravity / self.stall
 
 

@@ -1,0 +1,86 @@
+"""What an arm can lift and how fast it is, for a person and for a program."""
+
+from __future__ import annotations
+
+from typing import Annotated, TypedDict
+
+import numpy as np
+
+from greywhale.arm.make import Summary
+from greywhale.arm.parameters import JOINT_NAMES, ArmParameters
+from greywhale.protocol.table import ParameterTable
+
+MUCH_TO_HOLD = 0.6  # of stall_volts: the rest is for starting
+
+
+class JointFacts(TypedDict):
+    joint: int
+    gravity_nm: float  # the largest torque of gravity
+    stall_nm: float  # the motor's torque at standstill
+    no_load_speed_rad_s: float
+    hold_v: float  # holds the worst pose
+    holds_without_power: bool
+
+
+class Lifting(TypedDict):
+    """The table and what follows from it."""
+
+    mass_kg: float
+    joints: Annotated[list[JointFacts], ("minItems", 1), ("maxItems", 4)]  # in use
+    warnings: list[str]
+    before_it_moves: str  # what to do; empty where nothing
+
+
+def table(arm: ArmParameters, found: Summary) -> list[str]:
+    """Gravity against motor for each joint, and its speed."""
+    lines = [f"{arm.name}: {found.mass:.3g} kg, motors at {arm.drive.supply:g} V.", ""]
+    lines.append(f"{'':16}{'gravity, at most':>18}{'motor at standstill':>21}{'share':>8}{'fastest':>14}")
+    for one in found.joints:
+        lines.append(
+            f"{JOINT_NAMES[one.joint]:16}{one.gravity:>14.3g} N m{one.stall:>17.3g} N m{100 * one.share:>6.0f} %"
+            f"{np.degrees(one.no_load_speed):>8.0f} deg/s"
+        )
+    return lines
+
+
+def notes(found: Summary, left_out: tuple[str, ...] = ()) -> list[str]:
+    """Warnings, what to do before it moves, and which answers were left out."""
+    told = [f"Warning: {warning}" for warning in found.warnings]
+    if before := advice(found):
+        told.append(f"Before it moves: {before}")
+    if left_out:
+        told.append(f"Note: the file leaves out {len(left_out)} answers, taken as usual: {', '.join(left_out)}.")
+    return ["", *told] if told else []
+
+
+def advice(found: Summary) -> str:
+    """What a board as shipped needs for an arm whose motors have much to hold; "" where it needs nothing."""
+    hold = max(one.hold_v for one in found.joints)
+    shipped = ParameterTable.defaults().physical("stall_volts")
+    if hold <= MUCH_TO_HOLD * shipped or any(one.share >= 1.0 for one in found.joints):
+        return ""
+    return (
+        f"a joint needs {hold:.1f} V to hold still, and the board holds a joint back that has more than stall_volts "
+        f"({shipped:g} V) without motion: run `greywhale params set stall_volts={np.ceil(1.5 * hold):.0f}`."
+    )
+
+
+def lifting(found: Summary) -> Lifting:
+    """The same for a program."""
+    joints: list[JointFacts] = [
+        {
+            "joint": one.joint,
+            "gravity_nm": round(one.gravity, 6),
+            "stall_nm": round(one.stall, 6),
+            "no_load_speed_rad_s": round(one.no_load_speed, 6),
+            "hold_v": round(one.hold_v, 4),
+            "holds_without_power": one.holds,
+        }
+        for one in found.joints
+    ]
+    return {
+        "mass_kg": round(found.mass, 6),
+        "joints": joints,
+        "warnings": list(found.warnings),
+        "before_it_moves": advice(found),
+    }
