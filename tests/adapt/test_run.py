@@ -76,16 +76,35 @@ def ran(monkeypatch: pytest.MonkeyPatch) -> list[ParameterTable]:
     return seen
 
 
-def work(bench: LockStepBench, folder: Path, look: Callable[[str], None] = lambda what: None) -> AdaptationResult:
+def work(
+    bench: LockStepBench,
+    folder: Path,
+    look: Callable[[str], None] = lambda what: None,
+    warn: Callable[[], None] = lambda: None,
+) -> AdaptationResult:
     model = write_model(folder / "model.toml")
     request = AdaptationRequest(bench.port, model, folder / "adapted.toml", SerialWorkers(), seconds=SECONDS)
-    return adapt(request, lambda what, fraction, note="": look(what))
+    return adapt(request, lambda what, fraction, note="": look(what), warn)
 
 
 def stored(bench: LockStepBench) -> ParameterTable:
     """What the board runs after its next start, which opening its port is."""
     with Device(bench.port) as device:
         return read_parameters(device)
+
+
+def test_who_stops_at_the_warning_has_moved_nothing(
+    bench: LockStepBench, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    started: list[object] = []
+    monkeypatch.setattr(Device, "enable", lambda *asked: started.append(asked))
+
+    def stop() -> None:
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        work(bench, tmp_path, warn=stop)
+    assert started == []
 
 
 def test_a_set_runs_from_a_rest_on_and_the_one_from_before_at_the_end(

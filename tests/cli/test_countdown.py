@@ -1,4 +1,6 @@
-"""The countdown before an arm moves by itself: on a terminal, never for a simulated arm, and scripts say --yes."""
+"""The countdown before an arm moves by itself: on a terminal, never for a simulated arm there, and scripts say --yes.
+On a page before every start of the motors by a verb.
+"""
 
 from __future__ import annotations
 
@@ -11,7 +13,7 @@ from pathlib import Path
 import pytest
 
 from greywhale.base.errors import UserError
-from greywhale.cli import countdown, entry
+from greywhale.cli import countdown, entry, output
 from greywhale.protocol import schema
 from greywhale.protocol.ports import Port
 from tests.board.port_board import PortBoard
@@ -78,3 +80,52 @@ def test_ctrl_c_in_the_countdown_keeps_the_arm_still(tmp_path: Path) -> None:
         assert board.asked(schema.LeadRequest) == 0
     os.close(terminal)
     assert not log.exists()
+
+
+class Counted:
+    """A page for which verbs run; `stops` is the count at which a person stops one there."""
+
+    def __init__(self, stops: int = 0) -> None:
+        self.told: list[int] = []
+        self._stops = stops
+
+    def __call__(self, what: str, fraction: float, note: str = "") -> None: ...
+    def sums_up(self, text: str) -> None: ...
+
+    def counts(self, left: int) -> None:
+        self.told.append(left)
+        if self._stops and left == self._stops:
+            raise KeyboardInterrupt
+
+
+def test_a_page_counts_three_seconds_on_the_bench_too(monkeypatch: pytest.MonkeyPatch) -> None:
+    waited: list[float] = []
+    page = Counted()
+    countdown.warn_page(waited.append)  # without a page nothing is counted
+    assert waited == []
+    monkeypatch.setattr(output, "watcher", page)
+    monkeypatch.setattr(countdown, "is_bench", lambda port: True)
+    assert countdown.prepare_motion("/dev/arm", yes=False) is countdown.warn_page
+    assert countdown.prepare_motion("/dev/arm", yes=True) is countdown.warn_page
+    countdown.warn_page(waited.append)
+    assert (waited, page.told) == ([1.0, 1.0, 1.0], [3, 2, 1, 0])
+
+
+STARTS = (schema.EnableRequest, schema.LeadRequest)
+
+
+@pytest.mark.parametrize("stops", [3, 1])
+@pytest.mark.parametrize(
+    "verb", [["replay", "motion.csv"], ["record", "--excite", "--budget", "1"], ["record", "--enable"], ["commission"]]
+)
+def test_who_stops_the_count_on_a_page_has_moved_nothing(
+    verb: list[str], stops: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("motion.csv").write_text("time_s,leader_0,leader_1,leader_2,leader_3\n0,0,0,0,0\n1,0,0,0,0\n")
+    monkeypatch.setattr(output, "watcher", page := Counted(stops))
+    monkeypatch.setattr(countdown, "SECOND_S", 0.0)
+    with PortBoard() as board:
+        assert entry.run([*verb, "--port", board.port]) == entry.INTERRUPTED
+        assert [board.asked(start) for start in STARTS] == [0, 0]
+    assert page.told == [*range(3, stops - 1, -1), 0]

@@ -25,7 +25,7 @@ from greywhale.protocol import schema
 from greywhale.protocol.declared import Message
 from greywhale.protocol.frames import Frame, FrameDecoder, encode_frame
 
-VERB = (sys.executable, "-m", "greywhale.cli.job")
+VERB = (sys.executable, str(Path(__file__).with_name("quick_job.py")))
 PATIENCE_S = 120.0  # a verb that says nothing for so long hangs
 
 

@@ -26,12 +26,12 @@ from tests.cli.example_log import write_log
 from tests.dashboard.shared import PATIENCE_S, Desk, Shared
 
 
-def in_a_terminal(words: list[str], folder: Path, monkeypatch: pytest.MonkeyPatch) -> tuple[int, dict[str, Any]]:
-    """The verb's exit code there, and what it prints with --json."""
+def in_a_terminal(words: list[str], folder: Path, monkeypatch: pytest.MonkeyPatch) -> tuple[int, str]:
+    """The verb's exit code there, and what it prints."""
     monkeypatch.chdir(folder)
     with contextlib.redirect_stdout(io.StringIO()) as out, contextlib.redirect_stderr(io.StringIO()):
-        code = entry.run([*words, "--json"])
-    return code, json.loads(out.getvalue())
+        code = entry.run(words)
+    return code, out.getvalue()
 
 
 @pytest.mark.slow
@@ -44,9 +44,12 @@ def test_a_verb_answers_and_fails_as_in_a_terminal(
     write_log(tmp_path / "log.csv")
     for file in ("log.csv", "none.csv"):
         job = desk.run("evaluate", logs=[file])
-        code, answer = in_a_terminal(["evaluate", file], tmp_path, monkeypatch)
+        code, printed = in_a_terminal(["evaluate", file, "--json"], tmp_path, monkeypatch)
+        answer = json.loads(printed)
         assert job["exit_code"] == code
         assert (job["result"] or {"error": job["error"], "exit_code": code}) == answer
+        words = in_a_terminal(["evaluate", file], tmp_path, monkeypatch)[1]
+        assert words == (f"{job['summary']}\n" if job["summary"] else "")
     assert any(answer["error"] in line for line in job["said"])
 
 
@@ -135,6 +138,8 @@ def test_the_catalogue_is_that_of_the_command_line() -> None:
     for verb in VERBS.values():
         assert verb["help"].endswith(".")
         assert not {"port", "as_json"} & {one["name"] for one in verb["arguments"]}
+        without_countdown = [one for one in verb["arguments"] if "without the countdown" in one["help"]]
+        assert without_countdown == [], "on a page nobody leaves it out"
 
 
 def test_words_are_those_of_the_command_line(tmp_path: Path) -> None:

@@ -14,6 +14,7 @@ from playwright.sync_api import BrowserContext, Locator, Page, expect
 from greywhale.board.calibrate.words import sweep_asked
 from greywhale.commission.measures import NAMES, Measures
 from greywhale.commission.motions import PARTS
+from greywhale.dashboard.client import Client
 from greywhale.dashboard.job import Facts
 from greywhale.dashboard.jobs import Listed
 from greywhale.files.log import read_log
@@ -96,10 +97,11 @@ def test_verbs_end_with_their_result_or_their_sentence(search: Locator, desk: Pa
     result = done(record)
     rows = len(read_log(folder / "first.csv").time)
     assert rows > 400
-    expect(result).to_contain_text(str(rows))
+    expect(result.get_by_label("Result")).to_contain_text(f"{rows}")
+    expect(result.locator("details")).not_to_have_attribute("open", "")
     identify = begin(desk, "identify", logs="first.csv")  # which needs no board
     (folder / "led.csv").write_text("time_s,leader_0,leader_1,leader_2,leader_3\n0,0,0,0,0\n1,0.2,0,0,0\n")
-    done(begin(desk, "replay", motion="led.csv", out="second.csv", yes=True))
+    done(begin(desk, "replay", motion="led.csv", out="second.csv"))
     led = read_log(folder / "second.csv")
     assert led.leader[-1, 0] == pytest.approx(0.2, abs=0.001)
     assert set(np.diff(np.round(1000 * led.time))) == {1}
@@ -147,7 +149,7 @@ def facts_of(verb: str) -> Facts:
     """A job that runs."""
     return {
         "kind": "job", "id": verb, "verb": verb, "arguments": {}, "state": "running", "progress": None,
-        "result": None, "error": None, "exit_code": None, "said": [],
+        "countdown": 0, "summary": None, "result": None, "error": None, "exit_code": None, "said": [],
     }  # fmt: skip
 
 
@@ -223,6 +225,43 @@ def test_a_verb_that_cannot_start_says_why_as_long_as_that_holds(
         watcher.page.get_by_role("button", name="Let go").click()
         desk.get_by_role("button", name="Take control").click()
         expect(reason).to_be_visible()
+
+
+def test_the_count_before_the_arm_moves_stands_over_every_view_and_is_stopped_there(
+    desk: Page, stage: Stage, tell: Callable[[Facts], None], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked: list[str] = []
+    stopped = stage.relay.stopped
+
+    def note(where: str, by: Client | None = None) -> None:
+        asked.append(where)
+        stopped(where, by)
+
+    monkeypatch.setattr(stage.relay, "stopped", note)
+    desk.get_by_role("button", name="replay", exact=True).click()
+    field = desk.get_by_label("motion", exact=True)
+    count = desk.get_by_role("alertdialog")
+
+    def space_where_a_person_writes() -> None:
+        field.focus()
+        desk.keyboard.press("Space")
+
+    button = count.get_by_role("button", name="Stop")
+    stops: list[Callable[[], object]] = [
+        *(button.click, space_where_a_person_writes, lambda: desk.keyboard.press("Enter")),
+    ]
+    for number, stop in enumerate(stops):
+        facts: Facts = {**facts_of("replay"), "id": f"replay {number}"}
+        for left in (3, 2):
+            tell({**facts, "countdown": left})
+            expect(count.locator(".seconds")).to_have_text(str(left))
+        expect(button).to_be_focused()
+        stop()
+        stage.wait_for(lambda: asked == ["from the page that drives"])
+        asked.clear()
+        tell({**facts, "state": "stopped", "error": "Stopped from the page that drives."})
+        expect(count).to_be_hidden()
+    expect(field).to_have_value("")
 
 
 def test_nothing_bars_a_person(shared_page: Page) -> None:

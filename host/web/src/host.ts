@@ -83,6 +83,10 @@ export type Job = {
   readonly verb: string;
   readonly state: "running" | "done" | "failed" | "stopped";
   readonly progress: { readonly done: number; readonly total: number; readonly text: string; readonly note: string } | null;
+  /** Seconds until the arm moves; 0: it is not counted. */
+  readonly countdown: number;
+  /** The result in the terminal's words; null where there is none. */
+  readonly summary: string | null;
   readonly result: Json;
   readonly error: string | null;
   readonly said: readonly string[];

@@ -5,6 +5,7 @@ import { ArmView } from "./arm3d/view";
 import { LeaderHand } from "./bench/hand";
 import { BenchView } from "./bench/view";
 import { ControllerView } from "./controller/view";
+import { Countdown } from "./do/countdown";
 import { DoView } from "./do/view";
 import type { Host } from "./host";
 import { LiveView } from "./live/view";
@@ -32,6 +33,7 @@ function begin({ token, sentence }: Access): void {
 
 /** Adds what needs a host beside the board. */
 function addHost(shell: Shell, session: Session, host: Host): void {
+  document.body.append(new Countdown(session, host.jobs).element);
   const arm = new ArmView(session, host);
   for (const view of [arm, new ControllerView(session, host), new DoView(session, host), new LogsView(session, host)]) {
     shell.add(view);

@@ -41,6 +41,8 @@ export class Session {
   storedCrc: number | null = null;
   private readonly known = new Map<number, readonly number[]>(); // sets by their CRC
   notice: Notice | null = null;
+  /** Whether a verb counts down before it moves the arm. */
+  counting = false;
   /** How often a stop was asked for since the page was opened, here or elsewhere. */
   stopsAsked = 0;
   /** Whether the samples from before are here; until then new ones wait. */

@@ -132,11 +132,15 @@ export class Shell {
     setText(this.noticeText, notice.sentence);
   }
 
-  /** While motors run, the space bar stops them wherever the focus is, but in a field where a person writes. */
+  /**
+   * While motors run, the space bar stops them wherever the focus is, but in a field where a person writes. While it is
+   * counted down before they start, it does so there too.
+   */
   private pressed(event: KeyboardEvent): void {
     const { target } = event;
     const writing = target instanceof HTMLInputElement && WRITING.has(target.type);
-    if (event.key === " " && !writing && (this.session.motorsOn || target === document.body)) {
+    const { counting, motorsOn } = this.session;
+    if (event.key === " " && (counting || (!writing && (motorsOn || target === document.body)))) {
       event.preventDefault();
       if (!event.repeat) this.stopNow();
       return;

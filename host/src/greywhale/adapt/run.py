@@ -6,6 +6,7 @@ and the set from the start runs again, at the latest after the board's next star
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -58,9 +59,12 @@ class AdaptationRequest:
     seed: int = 0
 
 
-def adapt(request: AdaptationRequest, report: NotedProgress = show_no_progress) -> AdaptationResult:
+def adapt(
+    request: AdaptationRequest, report: NotedProgress = show_no_progress, warn: Callable[[], None] = lambda: None
+) -> AdaptationResult:
     """Watch a person work for `request.seconds`, and adapt the controllers meanwhile.
 
+    `warn` is called before the motors start.
     The set from the start runs again at the end; `store_kept` stores what was kept. Raises UserError.
     """
     model = load_model(request.model, force=True)
@@ -69,6 +73,7 @@ def adapt(request: AdaptationRequest, report: NotedProgress = show_no_progress) 
         refuse_uncalibrated(model.arm, start)
         session = _Session(device, request, model, start, searches, report)
         try:
+            warn()
             session.work()
             if session.changes:
                 run_set(device, start, report)

@@ -11,6 +11,7 @@ import click
 from greywhale.base.errors import MOST_SEED
 from greywhale.base.formats.whole import refuse_inputs
 from greywhale.base.study import LocalWorkers
+from greywhale.cli.countdown import warn_page
 from greywhale.cli.output import FILE, json_option, option, overwrite_option, port_option, progress, show, tell
 from greywhale.files.outputs import require_new
 from greywhale.protocol.ports import choose_port
@@ -68,7 +69,7 @@ def command(
     request = AdaptationRequest(choose_port(port), model, out, LocalWorkers(1), seconds, budget, seed)
 
     with progress() as report:
-        outcome = adapt(request, report)
+        outcome = adapt(request, report, warn_page)
     if outcome.improved and (store or (not as_json and _agrees(outcome))):
         outcome = store_kept(request.port, outcome)
     answer: Answer = {"port": request.port, **outcome.as_dict(), "out": str(out) if outcome.improved else None}

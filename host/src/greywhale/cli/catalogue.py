@@ -20,9 +20,16 @@ VERBS = (
     *("upload", "params backup", "params restore", "params diff", "flash"),
 )
 TAKES_PORT = {"flash"}
-# Of all verbs: what the server adds by itself. Of some: what needs the port itself, or a terminal.
+# Of all verbs: what the server adds by itself. Of some: what needs the port itself or a terminal, or would leave out
+# the countdown on the page.
 _SERVERS = {"as_json", "port"}
-_NOT_HERE = {"doctor": {"image", "hex_file"}, "record": {"reconnect"}, "info": {"watch", "seconds"}}
+_NOT_HERE = {
+    "doctor": {"image", "hex_file"},
+    "record": {"reconnect", "yes"},
+    "replay": {"yes"},
+    "commission": {"yes"},
+    "info": {"watch", "seconds"},
+}
 
 
 def catalogue() -> list[VerbFacts]:

@@ -1,6 +1,7 @@
 """`python -m greywhale.cli.job PROGRESS LINE PORT VERB ...`: a verb as the terminal runs it, for the page's server.
 
-PROGRESS and LINE are numbers of open files. The first gets the verb's progress as JSON, an object a line. The second is
+PROGRESS and LINE are numbers of open files. The first gets what a terminal would show, as JSON: an object a line, whose
+keys are those of `dashboard.job.Facts`. The second is
 a socket that stands for PORT, which the server holds and lends; where the verb needs no board, LINE is -.
 """
 
@@ -20,7 +21,7 @@ TOLD_SHARE = 0.002
 
 
 class Reporter:
-    """Writes what a verb reports, but not each of thousands of samples."""
+    """A `Watcher` that writes what a verb reports, but not each of thousands of samples."""
 
     def __init__(self, descriptor: int) -> None:
         self._file = os.fdopen(descriptor, "w", encoding="utf-8", buffering=1)
@@ -31,8 +32,17 @@ class Reporter:
         if (what, note) == (before[0], before[2]) and abs(fraction - before[1]) < TOLD_SHARE:
             return
         self._told = (what, fraction, note)
+        self._tell(progress={"text": what, "done": fraction, "total": 1.0, "note": note})
+
+    def counts(self, left: int) -> None:
+        self._tell(countdown=left)
+
+    def sums_up(self, text: str) -> None:
+        self._tell(summary=text)
+
+    def _tell(self, **facts: object) -> None:
         with contextlib.suppress(OSError):  # whoever watched has gone; the work goes on
-            print(json.dumps({"text": what, "done": fraction, "total": 1.0, "note": note}), file=self._file)
+            print(json.dumps(facts), file=self._file)
 
 
 def main() -> None:

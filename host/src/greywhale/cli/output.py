@@ -9,7 +9,7 @@ import sys
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path
-from typing import Any, TypedDict, TypeVar
+from typing import Any, Protocol, TypedDict, TypeVar
 
 import click
 
@@ -21,8 +21,6 @@ from greywhale.cli.wrapping import fit
 ANSWER = "answer"  # attribute of a verb's function: the type of what it prints with --json
 QUIET = "greywhale.quiet"  # in the context's `meta`: whether --quiet was said
 logger = logging.getLogger(__name__)
-# Who gets the reports of a verb that runs for a page, in the place of a terminal.
-watcher: NotedProgress | None = None
 Command = TypeVar("Command", bound=Callable[..., Any])
 FILE = click.Path(path_type=Path)
 # For every verb that writes files; `files.outputs.require_new` takes it.
@@ -35,6 +33,19 @@ port_option = click.option(
     shell_complete=completion.ports,
     help="Serial port of the board; without it, the only board found. [env: GREYWHALE_PORT]",
 )
+
+
+class Watcher(NotedProgress, Protocol):
+    """A page for which a verb runs, in the place of a terminal: it gets the reports, and what else a terminal shows."""
+
+    def counts(self, left: int) -> None:
+        """The arm moves in so many seconds; 0: it is no longer counted."""
+
+    def sums_up(self, text: str) -> None:
+        """The result in the terminal's words."""
+
+
+watcher: Watcher | None = None
 
 
 class OnPort(TypedDict):
@@ -75,7 +86,12 @@ def workers_options(*names: str) -> Callable[[Command], Command]:
 
 
 def show(as_json: bool, result: Mapping[str, object], text: str, hang: int = 0) -> None:
-    """Print the result of a verb: for programs or for people. `hang` indents what is broken off a long line."""
+    """Print the result of a verb: for programs or for people. `hang` indents what is broken off a long line.
+
+    A page gets both.
+    """
+    if watcher is not None:
+        watcher.sums_up(printable(text))
     if as_json:
         click.echo(json_of(result))
     else:

@@ -26,7 +26,7 @@ from greywhale.board.record import (
 )
 from greywhale.board.upload import read_parameters
 from greywhale.cli import completion
-from greywhale.cli.countdown import prepare_motion, yes_option
+from greywhale.cli.countdown import prepare_motion, warn_page, yes_option
 from greywhale.cli.output import FILE, OnPort, json_option, option, overwrite_option, port_option, progress, show
 from greywhale.files.leader import save_leader
 from greywhale.files.outputs import require_new
@@ -152,6 +152,8 @@ def command(
                 recorded = record_through_losses(chosen, out, length, every, report)
         else:
             with Device(chosen) as device, progress() as report:
+                if enable:
+                    warn_page()
                 recorded = record(device, out, length, every, enable, report, disengaged)
         answer: Answer = {"port": chosen, **recorded.as_dict()}
         show(as_json, answer, describe(chosen, recorded))

@@ -43,6 +43,8 @@ class Facts(TypedDict):
     arguments: dict[str, Any]
     state: Literal["running", "done", "failed", "stopped"]
     progress: dict[str, Any] | None  # done, total, text, note
+    countdown: int  # seconds until the arm moves; 0: it is not counted
+    summary: str | None  # the result as the verb prints it in a terminal, with lines of any length
     result: Any  # what the verb prints with --json
     error: str | None  # one sentence
     exit_code: int | None
@@ -68,7 +70,8 @@ class Job:
         """
         self.facts: Facts = {
             "kind": "job", "id": secrets.token_hex(4), "verb": verb, "arguments": arguments, "state": "running",
-            "progress": None, "result": None, "error": None, "exit_code": None, "said": [],
+            "progress": None, "countdown": 0, "summary": None, "result": None, "error": None, "exit_code": None,
+            "said": [],
         }  # fmt: skip
         self.uses_board = lender is not None or done is not None
         self._done = done
@@ -170,7 +173,7 @@ class Job:
         open_pipes = {
             self._process.stdout.fileno(): self._printed.extend,
             self._process.stderr.fileno(): self._take_said,
-            progress: self._take_progress,
+            progress: self._take_told,
         }
         with selectors.DefaultSelector() as selector:
             for descriptor in (*open_pipes, self._wake_out.fileno()):
@@ -209,10 +212,12 @@ class Job:
         self.facts["said"] = [*self.facts["said"], *said][-MOST_SAID:]
         self._changed(self)
 
-    def _take_progress(self, data: bytes) -> None:
+    def _take_told(self, data: bytes) -> None:
+        """What `greywhale.cli.job` tells: some of the facts."""
         lines = self._lines("progress", data)
+        for line in lines:
+            self.facts.update(json.loads(line))
         if lines:
-            self.facts["progress"] = json.loads(lines[-1])
             self._changed(self)
 
     def _lines(self, name: str, data: bytes) -> list[str]:
@@ -239,7 +244,7 @@ class Job:
             how = "was stopped before it had an answer" if stopped else f"ended without an answer (exit code {code})"
             answer = {"error": f"{self.facts['verb']} {how}.", "exit_code": code}
         failed = isinstance(answer, dict) and "exit_code" in answer and "error" in answer
-        self.facts["exit_code"] = code
+        self.facts["exit_code"], self.facts["countdown"] = code, 0
         self.facts["error"] = self._with_reason(answer["error"]) if failed else None
         self.facts["result"] = None if failed else answer
         self.facts["state"] = ("stopped" if stopped else "failed") if failed else "done"

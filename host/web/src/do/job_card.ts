@@ -58,7 +58,7 @@ export class JobCard {
       this.said.textContent = lines;
       this.said.scrollTop = this.said.scrollHeight;
     }
-    if (job.state !== this.shown && job.result !== null) this.showResult(job.result);
+    if (job.state !== this.shown && job.result !== null) this.showResult(job.result, job.summary);
     this.shown = job.state;
   }
 
@@ -76,13 +76,26 @@ export class JobCard {
     return this.curve.hear(progress) || !progress.note ? progress.text : `${progress.text} (${progress.note})`;
   }
 
-  private showResult(result: Json): void {
+  /** The terminal's words first; who wants each number opens the details. */
+  private showResult(result: Json, summary: string | null): void {
     const { curves = null, ...rest }: Entries = isRecord(result) ? result : { result };
     this.curve.end(curves);
     const trials = trialsIn(rest);
     const told = trials.length ? { ...rest, trials: trials.map(({ predicted, measured, ...other }) => other) } : rest;
-    this.result.replaceChildren(...(trials.length ? [predictedBeside(trials)] : []), describe(told, 0));
+    const details = describe(told, 0);
+    this.result.replaceChildren(
+      ...(summary ? [inWords(summary)] : []),
+      ...(trials.length ? [predictedBeside(trials)] : []),
+      summary ? el("details", {}, el("summary", {}, "Details"), details) : details);
   }
+}
+
+const COLUMNS = /\S {2,}\S/; // of a line that stands in a table
+
+/** A text as a terminal prints it: sentences break where the page ends, lines of tables do not. */
+function inWords(text: string): HTMLElement {
+  const lines = text.split("\n").map((line) => el("div", COLUMNS.test(line) ? { class: "columns" } : {}, line || "\u00a0"));
+  return el("div", { class: "summary", attrs: { tabindex: "0", role: "region", "aria-label": "Result" } }, ...lines);
 }
 
 const DEEPEST = 6;
