@@ -308,6 +308,7 @@ export class Session {
 
   private linked(state: LinkState): void {
     const opened = state.open && !this.link.open;
+    const holdsNoMore = this.link.sentence !== state.sentence && this.notice?.sentence === this.link.sentence;
     this.link = state;
     if (!state.open) {
       this.client.abandon(state.sentence || "The board went away.");
@@ -315,7 +316,7 @@ export class Session {
       this.parameters = null;
       this.storedCrc = null;
     }
-    if (opened) this.withdraw();
+    if (opened || holdsNoMore) this.withdraw();
     if (state.sentence && this.hello) this.tell(state.sentence, state.open ? "info" : "error");
     this.changed.emit();
     if (opened) void this.greet();

@@ -86,3 +86,24 @@ for (const who of ["nobody", "another page", "this page"]) {
     assert.equal(asked.includes(EnableRequest.type), who === "nobody");
   });
 }
+
+test("what was told of the link is taken back when it holds no more, and nothing else is", ({ mock }) => {
+  mock.timers.enable({ apis: ["setInterval", "setTimeout"] });
+  let heard!: BoardListener;
+  const session = new Session({
+    listen: (listener) => { heard = listener; }, send: () => undefined, drive: () => undefined, release: () => undefined,
+    history: () => Promise.resolve(zeros(0)),
+  });
+  session.hello = HelloReply.unpack(zeros(HelloReply.size));
+  session.link = { open: true, port: "here", sentence: "" };
+  const silent = { open: true, port: "here", sentence: "The board is silent: is its supply on?" };
+  const told = (): string | undefined => session.notice?.sentence;
+  heard.link(silent);
+  assert.equal(told(), silent.sentence);
+  heard.link({ ...silent, sentence: "" });
+  assert.equal(told(), undefined);
+  heard.link(silent);
+  session.tell("The log begins later.");
+  heard.link({ ...silent, sentence: "" });
+  assert.equal(told(), "The log begins later.");
+});

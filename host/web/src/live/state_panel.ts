@@ -61,7 +61,7 @@ export class StatePanel {
     setText(this.sentence, `${upperFirst(State.of(status.state).description)}.`);
     const facts: Record<string, string> = {
       "last stop": StopReason.of(status.stop_reason).description,
-      "supply, as set": parameters ? `${parameters[SUPPLY_MV]! / 1000} V` : "–", // no pin of the board measures it
+      "supply, as set": parameters ? `${parameters[SUPPLY_MV]! / 1000} V` : "being read", // no pin of the board measures it
       ticks: status.tick.toLocaleString("en"),
       "late ticks": String(status.late_ticks),
       "longest tick": `${status.tick_us_max} µs`,
