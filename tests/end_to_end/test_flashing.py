@@ -60,16 +60,17 @@ def test_a_flash_that_was_interrupted_is_repeated(board: str) -> None:
 class BadCable:
     """The line to a bench, which loses a byte of some pages on their way there, and of some on their way back."""
 
-    def __init__(self, line: Line, lost: list[str]) -> None:
-        self.line, self.lost = line, lost
+    def __init__(self, line: Line, lost: list[str], pages: list[int]) -> None:
+        """What was lost and the pages that were written are counted over all openings of the port."""
+        self.line, self.lost, self.pages = line, lost, pages
         self.restarted, self.close, self.clock, self.wait = line.restarted, line.close, line.clock, line.wait
-        self._pages, self._reads = 0, False
+        self._reads = False
 
     def write(self, data: bytes) -> None:
         self._reads = data[:1] == b"t" or data[5:6] == b"\x14"
         if len(data) > 100:
-            self._pages += 1
-            if self._pages in (3, 20):
+            self.pages.append(len(data))
+            if len(self.pages) in (3, 20):
                 self.lost.append("question")
                 data = data[:50] + data[51:]
         self.line.write(data)
@@ -87,13 +88,13 @@ class BadCable:
 @pytest.mark.parametrize("board", IMAGES)
 def test_bytes_that_are_lost_both_ways_do_no_harm(board: str) -> None:
     """In the middle of a page that is written, and in one that is read."""
-    image, lost = read_image(IMAGES[board]).memory, list[str]()
+    image, lost, pages = read_image(IMAGES[board]).memory, list[str](), list[int]()
     with lock_step("--blank", "--board", board) as bench, pytest.MonkeyPatch.context() as patch:
         start = LINES[bench.port]
 
         def open_badly(restart: bool, baud: int) -> Line:
             line = start(restart, baud)
-            return line if baud == BAUD else BadCable(line, lost)
+            return line if baud == BAUD else BadCable(line, lost, pages)
 
         patch.setitem(LINES, bench.port, open_badly)
         flash.flash(bench.port, board, hex_file=IMAGES[board])

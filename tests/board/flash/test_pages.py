@@ -64,7 +64,7 @@ def test_beyond_64_kilobytes_every_address_is_reached(tmp_path: Path) -> None:
     with board(Version2) as to:
         write(to, image(tmp_path, (0, content)))
         assert to.memory[: len(content)] == content
-        assert to.asked["seek"] == 2, "it goes on by itself, in writing as in reading"
+        assert to.asked["seek"] == 4, "it goes on by itself, in writing as in reading; twice for the first page"
 
 
 @BOTH
@@ -79,7 +79,7 @@ def test_what_lies_behind_a_gap_is_written_over_nothing(kind: Kind, old: bytes, 
 
 @pytest.mark.parametrize(
     ("held", "writes"),
-    [(b"", 6), (PATTERN[:300], 6), (PATTERN[:299] + b"\0", 514), (bytes(512), 514)],
+    [(b"", 7), (PATTERN[:300], 7), (PATTERN[:299] + b"\0", 515), (bytes(512), 515)],
     ids=["nothing", "the same", "a wrong byte", "other code"],
 )
 def test_a_gap_is_erased_only_where_it_must_be(held: bytes, writes: int, tmp_path: Path) -> None:
@@ -176,18 +176,46 @@ def test_another_program_at_the_port_is_named_and_that_the_image_is_not_whole(ki
 
 
 @BOTH
-def test_an_interrupt_leaves_a_board_that_can_be_flashed_again(kind: Kind, tmp_path: Path) -> None:
-    def interrupt(asked: str, count: int) -> str:
-        if (asked, count) == ("write", 3):
+@pytest.mark.parametrize(("asked", "count"), [("write", 1), ("write", 3), ("read", 0), ("read", 3)])
+def test_a_flash_that_ends_anywhere_leaves_a_board_that_does_nothing_and_can_be_flashed_again(
+    kind: Kind, asked: str, count: int, tmp_path: Path
+) -> None:
+    """An old program, or half of it with half of the new one, would do anything: the first page is a loop."""
+
+    def interrupt(what: str, before: int) -> str:
+        if (what, before) == (asked, count):
             raise KeyboardInterrupt
         return ""
 
     with board(kind, bytes(4096), interrupt) as to:
         with pytest.raises(KeyboardInterrupt):
             write(to, image(tmp_path, (0, PATTERN)))
-        assert to.memory[: 3 * to.page] == PATTERN[: 3 * to.page]
+        assert to.memory[: to.page] == b"\xff\xcf".ljust(to.page, b"\xff")
         assert not to.left
         to.spoil = spoil("", "write")
         write(to, image(tmp_path, (0, PATTERN)))
         assert to.memory[: len(PATTERN)] == PATTERN
         assert to.left
+
+
+@BOTH
+@pytest.mark.parametrize("what", ["question", "answer", "garbled"])
+def test_a_first_page_whose_writing_was_lost_is_written_again_and_the_next_page_stays(
+    kind: Kind, what: str, tmp_path: Path
+) -> None:
+    pages = -(-len(PATTERN) // kind.page)
+    with board(kind, bytes(4096), spoil(what, "write", pages, pages + 1)) as to:
+        write(to, image(tmp_path, (0, PATTERN)))
+        assert to.memory[: len(PATTERN)] == PATTERN
+        assert to.left
+
+
+@BOTH
+def test_a_first_page_that_is_not_kept_is_named_and_never_started(kind: Kind, tmp_path: Path) -> None:
+    pages = -(-len(PATTERN) // kind.page)
+    with board(kind, spoil=spoil("question", "write", *range(pages, pages + 3))) as to:
+        with pytest.raises(
+            UserError, match=rf"the board holds 0xff at address 0x0 instead of {PATTERN[0]:#04x}; flash it"
+        ):
+            write(to, image(tmp_path, (0, PATTERN)))
+        assert not to.left

@@ -2,11 +2,16 @@
 
 The Mega's bootloader erases one page after the other from the first on, whichever page is written. So a page behind a
 gap of the image would be written over what an old program left there, or be erased after it was written.
+
+Whatever ends the writing in the middle, the board does nothing: half of a new program with half of an old one could
+do anything with the motors. So the first page, where a program starts, first gets an endless loop, and its content when
+all else is there. The Mega's bootloader erases the first page again only after a restart.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import ExitStack
 
 from greywhale.base.errors import UserError
 from greywhale.base.types import Progress
@@ -16,20 +21,24 @@ from greywhale.board.flash.stk500 import Stk500
 from greywhale.protocol.transport import PortDisturbedError, PortLostError
 
 _ATTEMPTS = 3
+_LOOP = b"\xff\xcf"  # rjmp to itself, with interrupts off and all pins inputs as after every restart
 _NOTHING = 2 * ERASED  # a word that changes nothing wherever it is written, but a page is erased for it
 
 
 class Memory:
-    """The program memory behind a bootloader, which is asked again where a byte was lost on the way."""
+    """The program memory behind a bootloader, which is asked again where a byte was lost on the way.
 
-    def __init__(self, port: str, line: Stk500) -> None:
-        self.port, self.line = port, line
+    The Nano's may end then. `restart` brings it back; without it that is told as silence.
+    """
+
+    def __init__(self, port: str, line: Stk500, restart: Callable[[], Stk500] | None = None) -> None:
+        self.port, self.line, self._restart = port, line, restart
 
     def write(self, address: int, content: bytes) -> None:
         for _ in range(_ATTEMPTS):
             if self.line.write(address, content):
                 return
-            self.line.enter()
+            self._resume(address)
         raise self._silent(address)
 
     def read(self, block: range) -> bytes:
@@ -38,13 +47,23 @@ class Memory:
             found = self.line.read(block.start, len(block) + len(block) % 2)  # whole words
             if found is not None:
                 return found[: len(block)]
-            self.line.enter()
+            self._resume(block.start)
         raise self._silent(block.start)
 
     def read_all(self, blocks: Sequence[range], what: str, report: Progress) -> Iterator[bytes]:
         for done, block in enumerate(blocks, start=1):
             yield self.read(block)
             report(what, done / len(blocks))
+
+    def _resume(self, address: int) -> None:
+        if self.line.enter() or self._restart is None:
+            return
+        try:
+            self.line = self._restart()
+        except PortLostError:
+            raise
+        except UserError:
+            raise self._silent(address) from None
 
     def _silent(self, address: int) -> UserError:
         return UserError(
@@ -54,22 +73,46 @@ class Memory:
 
 def write_image(port: str, dialect: Dialect, image: Image, size: int, report: Progress) -> None:
     """Write the image in pages of this size, read all of it back, and let the board start it."""
+    first, *others = blocks_of(image, size)
+    loop = _LOOP.ljust(size, ERASED)
     try:
-        with enter_bootloader(port, dialect) as line:
-            memory = Memory(port, line)
-            held = held_blocks(image, size)
-            pages = blocks_of(image, size) if _must_erase_gaps(memory, image, held, size) else held
+        with ExitStack() as opened:
+
+            def start() -> Stk500:
+                opened.close()
+                return opened.enter_context(enter_bootloader(port, dialect))
+
+            line = start()
+            # A restart lets the Mega's bootloader erase what is written already.
+            memory = Memory(port, line, None if line.erases_in_order else start)
+            held = [block for block in held_blocks(image, size) if block != first]
+            pages = [first, *(others if _must_erase_gaps(memory, image, held, size) else held)]
+            content = {page: image.content(page).ljust(size, ERASED) for page in held} | {first: loop}
             for done, page in enumerate(pages, start=1):
-                memory.write(page.start, image.content(page).ljust(size, ERASED) if page in held else _NOTHING)
+                memory.write(page.start, content.get(page, _NOTHING))
                 report("writing", done / len(pages))
-            for page, found in zip(held, memory.read_all(held, "verifying", report), strict=True):
-                _require(port, image, page, found)
-            line.leave()
+            written = [first, *held]
+            for page, found in zip(written, memory.read_all(written, "verifying", report), strict=True):
+                _require(port, page, content[page][: len(page)], found)
+        _write_first(port, dialect, first, image.content(first), size)
     except PortLostError:
         raise UserError(f"{port} went away while it was being flashed; connect the board and flash it again.") from None
     except PortDisturbedError as disturbed:
         disturbed.add_note("The board was not flashed whole: flash it again.")
         raise
+
+
+def _write_first(port: str, dialect: Dialect, page: range, content: bytes, size: int) -> None:
+    """Write the first page, and let the board start. Once after each restart: a second write erases the next page."""
+    found = b""
+    for _ in range(_ATTEMPTS):
+        with enter_bootloader(port, dialect) as line:
+            line.write(page.start, content.ljust(size, ERASED))
+            found = Memory(port, line).read(page)
+            if found == content:
+                line.leave()
+                return
+    _require(port, page, content, found)
 
 
 def blocks_of(image: Image, size: int) -> list[range]:
@@ -82,17 +125,17 @@ def held_blocks(image: Image, size: int) -> list[range]:
 
 
 def _must_erase_gaps(memory: Memory, image: Image, held: Sequence[range], size: int) -> bool:
-    """Whether a page behind a gap would not keep what is written there."""
-    late = [page for place, page in enumerate(held) if page.start != place * size]
+    """Whether a page behind a gap would not keep what is written there; `held` are those behind the first page."""
+    late = [page for place, page in enumerate(held, start=1) if page.start != place * size]
     if not (memory.line.erases_in_order and late):
         return False
-    if late[0].start < len(held) * size:  # its turn to be erased comes after it was written
+    if late[0].start <= len(held) * size:  # its turn to be erased comes after it was written
         return True
     return any(memory.read(page) not in (image.content(page), ERASED * len(page)) for page in late)
 
 
-def _require(port: str, image: Image, page: range, found: bytes) -> None:
-    for at, wanted, holds in zip(page, image.content(page), found, strict=True):
+def _require(port: str, page: range, content: bytes, found: bytes) -> None:
+    for at, wanted, holds in zip(page, content, found, strict=True):
         if wanted != holds:
             raise UserError(
                 f"{port}: the board holds {holds:#04x} at address {at:#x} instead of {wanted:#04x}; flash it again."
