@@ -17,7 +17,7 @@ from greywhale.dashboard.outbox import Outbox
 from greywhale.dashboard.port_holder import ASK_AGAIN_S, LOOK_AGAIN_S, STOPPED, PortHolder
 from greywhale.dashboard.relay import Relay
 from greywhale.protocol import schema
-from greywhale.protocol.transport import open_line
+from greywhale.protocol.lines import open_line
 from tests.board.fake_board import FakeBoard, Faults
 from tests.board.port_board import PortBoard
 

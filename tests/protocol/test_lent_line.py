@@ -12,7 +12,8 @@ import pytest
 from greywhale.board.device import Device
 from greywhale.board.session import Session, ask_to_stop
 from greywhale.protocol.lent_line import lend
-from greywhale.protocol.transport import LENT, PortLostError, open_line
+from greywhale.protocol.lines import open_line
+from greywhale.protocol.transport import LENT, PortLostError
 from tests.board.fake_board import FakeBoard
 
 PORT = "/dev/null"  # a device that any system has: a lender has its name already

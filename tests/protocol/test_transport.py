@@ -14,13 +14,13 @@ import serial
 
 from greywhale.base import system
 from greywhale.base.errors import UserError
+from greywhale.protocol.lines import open_line
 from greywhale.protocol.transport import (
     PortBusyError,
     PortDisturbedError,
     PortLostError,
     Transport,
     disturbance,
-    open_line,
 )
 from tests.board.port_board import locked, opened
 

@@ -6,11 +6,13 @@ bits.
 
 from __future__ import annotations
 
+import math
 import random
 
 from greywhale.base.errors import UserError
 
 SAME = 0.02  # closer rates cannot miss a bit: skip the bit model
+ANY_BAUD = math.inf  # of a line without a speed: as its other end has it
 
 
 def resample(data: bytes, sender_baud: float, receiver_baud: float) -> bytes:
@@ -19,6 +21,8 @@ def resample(data: bytes, sender_baud: float, receiver_baud: float) -> bytes:
     """
     if sender_baud <= 0.0 or receiver_baud <= 0.0:
         return b""
+    if ANY_BAUD in (sender_baud, receiver_baud):
+        return data
     ratio = sender_baud / receiver_baud  # sent bits in one of the receiver's
     if abs(ratio - 1.0) <= SAME:
         return data

@@ -17,7 +17,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from types import FrameType
 
-from greywhale.base.errors import UserError
+from greywhale.base.errors import BAD_USAGE, UserError
 from greywhale.base.runtime import make_runtime_directory
 from greywhale.files.outputs import require_files
 from greywhale.protocol.joints import ALL
@@ -26,8 +26,8 @@ from greywhale_sim import commands
 from greywhale_sim.assemble import BenchOptions, build_bench
 from greywhale_sim.bench import Plant
 from greywhale_sim.lockstep import tell_joints
-from greywhale_sim.serial_port import SerialPort
-from greywhale_sim.server import Server
+from greywhale_sim.server import Port, Server
+from greywhale_sim.socket_port import SocketPort
 
 TURNS_PER_COMMAND = 16  # turns between two looks at the standard input
 
@@ -38,6 +38,7 @@ class ServeOptions(BenchOptions):
 
     speed: str = "1"  # "1" real time, "max" as fast as possible
     link: Path | None = None  # a lasting name for the port
+    listen: str | None = None  # PORT or HOST:PORT: be a TCP port instead
     control: bool = field(default=False)  # take commands from standard input; its end ends the bench
     by_hand: bool = False  # the same for a person, who is answered in words
 
@@ -56,12 +57,22 @@ def running(
     bench = build_bench(options, plant)
     if bench.joints != ALL and _is_new(options):
         tell_joints(bench, options)
-    port = SerialPort(_links(options, note))
+    port = _open_port(options, note)
     server = Server(bench, port, fast=options.speed == "max", eeprom=options.eeprom)
     try:
         yield server
     finally:
         server.close()
+
+
+def _open_port(options: ServeOptions, note: Callable[[str], None]) -> Port:
+    if options.listen is None and sys.platform == "linux":
+        from greywhale_sim.serial_port import SerialPort  # other systems have not what it needs
+
+        return SerialPort(_links(options, note))
+    if options.speed == "max":
+        raise UserError("a TCP port does not tell how far its host has read; leave out --speed max.", BAD_USAGE)
+    return SocketPort(options.listen or "0")
 
 
 def _is_new(options: ServeOptions) -> bool:
@@ -99,7 +110,8 @@ def _ending_on_signals(server: Server) -> Iterator[None]:
     def end(number: int, frame: FrameType | None) -> None:
         server.ending = True
 
-    before = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)}
+    ends = [signal.SIGINT, signal.SIGTERM, *([signal.SIGHUP] if hasattr(signal, "SIGHUP") else [])]
+    before = {number: signal.getsignal(number) for number in ends}
     for number, handler in before.items():
         if handler is not signal.SIG_IGN:  # nohup and background jobs ignore signals on purpose
             signal.signal(number, end)

@@ -18,7 +18,7 @@ EEPROM_CHECK_S = 0.05
 
 
 class Port(Protocol):
-    """The host's end of the serial line (greywhale_sim.serial_port.SerialPort)."""
+    """The host's end of the serial line: a pseudo-terminal (serial_port.py), a TCP port (socket_port.py)."""
 
     path: str
 

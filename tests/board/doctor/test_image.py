@@ -15,8 +15,9 @@ from greywhale.board.flash.pages import held_blocks
 from greywhale.board.flash.readback import shipped_image
 from greywhale.board.flash.targets import BOARDS
 from greywhale.cli.entry import run
+from greywhale.protocol.lines import open_line
 from greywhale.protocol.schema import State
-from greywhale.protocol.transport import LINES, open_line
+from greywhale.protocol.transport import LINES
 from greywhale_sim.words import lock_step
 from tests.board.flash.hex_files import hex_text
 

@@ -23,7 +23,8 @@ from greywhale.board.session import Session
 from greywhale.protocol import schema
 from greywhale.protocol.declared import Reply_co, Request
 from greywhale.protocol.frames import Frame, FrameDecoder, encode_frame
-from greywhale.protocol.transport import Line, PortDisturbedError, PortLostError, disturbance, open_line
+from greywhale.protocol.lines import open_line
+from greywhale.protocol.transport import Line, PortDisturbedError, PortLostError, disturbance
 
 # After this long without an answer a request is repeated, unchanged. Every request may be repeated safely.
 REPLY_WAIT_S = 0.3

@@ -20,6 +20,7 @@ from typing import NamedTuple
 from greywhale.base import system
 from greywhale.base.errors import UserError
 from greywhale.protocol.holder import describe
+from greywhale.protocol.lines import device_of
 
 STOP, CLUTCH = "stop", ("engage", "disengage")  # what a client may say
 NAMES = 8
@@ -99,7 +100,7 @@ def find(port: str, patience_s: float) -> tuple[socket.socket, Peer] | None:
 
     Where others crowd a name, it is tried again until the patience ends.
     """
-    device = system.device_of(port) if system.HAS_ABSTRACT_SOCKETS else None
+    device = device_of(port) if system.HAS_ABSTRACT_SOCKETS else None
     end = time.monotonic() + patience_s
     while device is not None:
         try:

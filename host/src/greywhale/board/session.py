@@ -23,6 +23,7 @@ from greywhale.base import system
 from greywhale.base.errors import UserError, os_reason
 from greywhale.board import meeting
 from greywhale.protocol.holder import describe
+from greywhale.protocol.lines import device_of
 from greywhale.protocol.transport import LENT
 
 NOTE = "It was stopped with `greywhale stop` from another terminal."
@@ -47,7 +48,7 @@ class Session:
     def __init__(self, port: str) -> None:
         self.port = port
         self._key = _key(port)
-        self._device = None if port in LENT else system.device_of(port)  # whoever lends a port listens for it
+        self._device = None if port in LENT else device_of(port)  # whoever lends a port listens for it
         self.asked = False
         self.goes_on = False  # this process goes on after a stop, as a server does
         self._users = 0
@@ -278,7 +279,7 @@ def ask_for_clutch(port: str, action: str, heard_s: float = HEARD_S) -> int | No
 
 def _key(port: str) -> str:
     """What is the same for all names of a port."""
-    return system.device_of(port) or os.path.realpath(port)
+    return device_of(port) or os.path.realpath(port)
 
 
 def _read_line(client: socket.socket) -> bytes:

@@ -23,6 +23,7 @@ class Port(TypedDict):
 @option("--leader", type=FILE, help="CSV with the leader's motion.")
 @option("--arm", type=FILE, help="TOML with the arm; without it, the built-in one.")
 @option("--speed", type=click.Choice(["1", "max"]), default="1", help="Real time or faster.")
+@option("--listen", metavar="[HOST:]PORT", help="Be a TCP port instead of a serial one; 0 takes any free port.")
 @option("--by-hand", is_flag=True, help="Be the person: type `turn leader 0`, `hold 30`; `help` lists all.")
 @json_option(Port | Mistakes)
 def command(leader: Path | None, faults: tuple[str, ...], by_hand: bool, as_json: bool, **options: Any) -> None:

@@ -77,12 +77,6 @@ LINES: dict[str, Callable[[bool, int], Line]] = {}
 LENT: dict[str, Callable[[bool, int], Line]] = {}
 
 
-def open_line(port: str, restart: bool = True, baud: int = BAUD) -> Line:
-    """Open the port, with a `restart` of the board or, if that can be, without: the line tells whether it restarted."""
-    opened = LENT.get(port) or LINES.get(port)
-    return Transport(port, restart, baud) if opened is None else opened(restart, baud)
-
-
 def disturbance(line: Line) -> PortDisturbedError | None:
     """What another program does to a line, as far as the system tells; None where nothing is known of that kind."""
     return line.disturbance() if isinstance(line, Transport) else None

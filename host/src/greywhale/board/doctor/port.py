@@ -7,6 +7,7 @@ from greywhale.board.doctor.finding import Finding, Verdict
 from greywhale.board.refusal import upper_first
 from greywhale.protocol.holder import meddler, second_user_of
 from greywhale.protocol.ports import find_ports, is_bench
+from greywhale.protocol.socket_line import PREFIX
 from greywhale.protocol.transport import LINES
 
 RULES_FILE = "/etc/udev/rules.d/60-greywhale.rules"
@@ -19,6 +20,8 @@ def examine_port(port: str) -> list[Finding]:
     """Findings about a port, before it is opened; a bad one is the last."""
     if port in LINES:
         return [Finding("port", Verdict.GOOD, f"{port} is in this program.")]
+    if port.startswith(PREFIX):
+        return [Finding("port", Verdict.GOOD, f"{port} is a TCP port.")]
     if not system.exists(port):
         others = ", ".join(one.device for one in find_ports()) or "none"
         return [Finding("port", Verdict.BAD, f"There is no port {port}; there are: {others}.", "Plug the board in.")]

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from greywhale.base.errors import UserError
 from greywhale.board.flash.stk500 import LANGUAGES, Stk500
 from greywhale.board.flash.talk import Talk
-from greywhale.protocol.transport import open_line
+from greywhale.protocol.lines import open_line
 
 _ROUNDS = 3
 
