@@ -5,6 +5,7 @@ from __future__ import annotations
 import errno
 import http.client
 import os
+import select
 import socket
 import sys
 import threading
@@ -16,8 +17,8 @@ from starlette.responses import PlainTextResponse
 from starlette.types import Receive, Scope, Send
 
 from greywhale.base import system
-from greywhale.dashboard import connections, server
-from greywhale.dashboard.door import AT_ONCE, PATIENCE_S, Door
+from greywhale.dashboard import connections, guard, server
+from greywhale.dashboard.door import PATIENCE_S, Door
 from greywhale.dashboard.guard import SUBPROTOCOL, Guard
 from tests.dashboard.browser import PATIENCE_S as HANGS_S
 from tests.dashboard.browser import Page
@@ -116,14 +117,29 @@ def test_too_many_with_the_token_are_told_so() -> None:
             pass  # the server has not noticed yet that the other one went
 
 
-def test_a_strangers_requests_run_out_and_nobody_elses() -> None:
-    ask = b"GET / HTTP/1.1\r\nHost: 127.0.0.1:%d\r\n\r\n"
-    with serving(Door(clock=lambda: 0.0)) as page:
-        for _ in range(3):
-            said = rest(connect(page, (int(AT_ONCE) + 1) * (ask % page.port)))
-            assert (said.count(b"there"), said.count(b" 429 ")) == (AT_ONCE, 1)
-            assert page.ask("GET", "/state")[0] == 200
-            assert Page(page.port, "").ask("GET", "/")[0] == 200
+def test_strangers_wait_for_each_other_and_the_owner_for_none_of_them(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(guard, "STRANGERS_A_SECOND", 0.0)
+    monkeypatch.setattr(guard, "STRANGERS_AT_ONCE", 3.0)
+    request = b"%s HTTP/1.1\r\nHost: 127.0.0.1:%d\r\nConnection: close\r\n\r\n"
+    asked = [b"GET /", b"GET /state", b"POST /enter", b"GET /", b"GET /state", b"POST /", b"HEAD /"]
+    with serving(Door()) as page, page.open("/board") as own:
+        strangers = [connect(page, request % (one, page.port)) for one in asked[:3]]
+        assert [b"HTTP/1.1" in rest(one) for one in strangers] == 3 * [True]
+        strangers = [connect(page, request % (one, page.port)) for one in asked[3:]]
+        for _ in range(20):
+            assert page.ask("GET", "/state") == (200, b"there")
+        own.say({})
+        assert own.take() == "there"
+        assert select.select(strangers, [], [], 0)[0] == []
+        for one in strangers:
+            one.close()
+
+
+def test_nobody_without_the_token_is_refused_for_others_requests(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(guard, "STRANGERS_AT_ONCE", 2.0)
+    monkeypatch.setattr(guard, "STRANGERS_A_SECOND", 1000.0)
+    with serving(Door()) as page:
+        assert [Page(page.port, "").ask("GET", "/")[0] for _ in range(50)] == 50 * [200]
 
 
 class Poor(socket.socket):

@@ -39,13 +39,20 @@ class Arrival:
     def __init__(self, connection: socket.socket) -> None:
         self.connection = connection
         self._loop = asyncio.get_running_loop()
-        self._handed = self._closed = False
+        self.has_spoken = self._handed = self._closed = False
         self._transport: asyncio.Transport | None = None
         self._protocol: asyncio.BaseProtocol | None = None
 
     @property
     def gone(self) -> bool:
         return self._closed or (self._transport is not None and self._transport.is_closing())
+
+    @property
+    def waits(self) -> bool:
+        protocol = self._protocol
+        if isinstance(protocol, H11Protocol):
+            return protocol.cycle is None or not protocol.cycle.response_complete
+        return self.has_spoken and protocol is None
 
     @property
     def busy(self) -> bool:
@@ -60,14 +67,14 @@ class Arrival:
             self._loop.remove_reader(self.connection)
             self.connection.close()
 
-    def has_ended(self) -> bool:
-        """Whether the other side has closed it, or reset it, without a word."""
+    def has_said(self) -> bytes | None:
+        """The first byte of what has come; none where the other side has closed it, None where nothing is there yet."""
         try:
-            return not self.connection.recv(1, socket.MSG_PEEK)
+            return self.connection.recv(1, socket.MSG_PEEK)
         except BlockingIOError:
-            return False
+            return None
         except OSError:
-            return True
+            return b""
 
     async def hand(self, server: uvicorn.Server) -> None:
         """Let uvicorn have it."""
@@ -130,7 +137,7 @@ class Server(uvicorn.Server):
             loop.call_later(pause_s, self._listen)
 
     def _accept(self, listener: socket.socket) -> None:
-        while self._accepted.take():
+        while self._door.make_room() and self._accepted.take():
             try:
                 connection, address = listener.accept()
             except ConnectionAbortedError:
@@ -150,7 +157,7 @@ class Server(uvicorn.Server):
             connection.setblocking(False)
             arrival = Arrival(connection)
             self._door.enter(address, arrival)
-            asyncio.get_running_loop().add_reader(connection, self._hear, arrival)
+            self._hear(arrival)  # who waited to be accepted has said something meanwhile
         self._rest(_AGAIN_S)
 
     def _spend_reserve(self, listener: socket.socket) -> None:
@@ -162,14 +169,19 @@ class Server(uvicorn.Server):
         self._rest(WITHOUT_DESCRIPTORS_S)
 
     def _hear(self, arrival: Arrival) -> None:
-        """A connection has said something, or has ended."""
-        asyncio.get_running_loop().remove_reader(arrival.connection)
-        if arrival.has_ended():
+        """Take what a connection has said, or its end; else wait for either."""
+        loop = asyncio.get_running_loop()
+        loop.remove_reader(arrival.connection)
+        said = arrival.has_said()
+        if said is None:
+            loop.add_reader(arrival.connection, self._hear, arrival)
+        elif said:
+            arrival.has_spoken = True
+            self._spoken.append(arrival)
+            if len(self._spoken) == 1:
+                self._hand()
+        else:
             arrival.close()
-            return
-        self._spoken.append(arrival)
-        if len(self._spoken) == 1:
-            self._hand()
 
     def _hand(self) -> None:
         """Let uvicorn have those that have said something, the first of them first; others wait meanwhile."""

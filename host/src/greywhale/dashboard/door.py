@@ -1,7 +1,7 @@
 """Who is connected: those who have shown the token, and strangers, of whom few may stay, and not for long.
 
 A stranger can neither keep the owner out nor use up the server's descriptors: when one too many comes, an older one
-is closed.
+is closed, or the new one waits until one has had its time.
 """
 
 from __future__ import annotations
@@ -12,15 +12,13 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol
 
-from greywhale.dashboard.bucket import Bucket
-
 # A page that loads opens six connections without the token, and some browsers a few more for later.
 MOST_STRANGERS = 64
 MOST_KNOWN = 64  # a page has two, and a moment's more for what it asks
 # A browser that opens a connection beforehand may use it seconds later.
 PATIENCE_S = 10.0
-# Of one connection without the token. A page that loads asks for some ten files.
-REQUESTS_A_SECOND, AT_ONCE = 20.0, 60.0
+# In this time a stranger that asks for something gets it, and is not closed for another one.
+GRACE_S = 2.0
 
 Address = tuple[str, int]
 logger = logging.getLogger(__name__)
@@ -34,8 +32,12 @@ class Visitor(Protocol):
         """Whether it is closed, or about to be."""
 
     @property
+    def waits(self) -> bool:
+        """Whether it has said something, and has not got a whole answer yet."""
+
+    @property
     def busy(self) -> bool:
-        """Whether it has asked for something and not got all of it yet."""
+        """Whether it has asked for something, of which not all has gone out yet."""
 
     def close(self) -> None:
         """Close it at once, whatever was still to be sent."""
@@ -45,7 +47,6 @@ class Visitor(Protocol):
 class _Stranger:
     visitor: Visitor
     since_s: float
-    requests: Bucket
 
 
 class Door:
@@ -62,14 +63,29 @@ class Door:
         self._known: dict[Address, Visitor] = {}
         self._told: set[str] = set()
 
-    def enter(self, address: Address, visitor: Visitor) -> None:
-        """A connection begins. Where there are too many strangers, the oldest is closed that waits for no answer."""
+    def make_room(self) -> bool:
+        """Whether one more may enter. Of too many strangers the oldest is closed that waits for no answer, or else the
+        oldest of all that has had its time.
+        """
         self._forget_gone()
-        if len(self._strangers) >= self._most_strangers:
-            self.tell(f"more than {self._most_strangers} connections show no token; the oldest of them are closed.")
-            idle = (one for one, stranger in self._strangers.items() if not stranger.visitor.busy)
-            self._strangers.pop(next(idle, next(iter(self._strangers)))).visitor.close()
-        self._strangers[address] = _Stranger(visitor, self._clock(), Bucket(REQUESTS_A_SECOND, AT_ONCE, self._clock))
+        if len(self._strangers) < self._most_strangers:
+            return True
+        self.tell(f"more than {self._most_strangers} connections show no token; the oldest of them are closed.")
+        then_s = self._clock() - GRACE_S
+        for stranger in self._strangers.values():
+            if not stranger.visitor.waits:
+                break
+        else:
+            stranger = next(iter(self._strangers.values()))
+            if stranger.since_s > then_s:
+                return False
+        stranger.visitor.close()
+        self._forget_gone()
+        return True
+
+    def enter(self, address: Address, visitor: Visitor) -> None:
+        """A connection begins, as a stranger's."""
+        self._strangers[address] = _Stranger(visitor, self._clock())
 
     def welcome(self, address: Address) -> bool:
         """It has shown the token; False where too many others have."""
@@ -83,10 +99,10 @@ class Door:
         self._strangers.pop(address, None)
         return True
 
-    def may_ask(self, address: Address) -> bool:
-        """Whether it may ask for something without the token now."""
+    def is_there(self, address: Address) -> bool:
+        """Whether this stranger is still connected."""
         stranger = self._strangers.get(address)
-        return stranger is None or stranger.requests.take()
+        return stranger is not None and not stranger.visitor.gone
 
     def look(self) -> None:
         """Close the strangers that had their time and wait for no answer."""

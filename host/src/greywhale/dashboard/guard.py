@@ -6,6 +6,7 @@ this address (DNS rebinding). Neither knows the token, and both say in their hea
 
 from __future__ import annotations
 
+import asyncio
 import hmac
 from collections.abc import Callable
 
@@ -14,7 +15,7 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from greywhale.dashboard.access import ANEW
 from greywhale.dashboard.bucket import Bucket
-from greywhale.dashboard.door import Address, Door
+from greywhale.dashboard.door import Door
 
 SUBPROTOCOL = "greywhale"
 TOKEN_PREFIX = "token."
@@ -22,7 +23,11 @@ ENTRY = "/enter"  # where a ticket is exchanged for the token
 MOST_BODY_BYTES = 1 << 20
 # Of all who have the token. A page asks for some ten things at its start, and then for one at a time.
 REQUESTS_A_SECOND, AT_ONCE = 100.0, 300.0
+# Of all others. Whoever comes too early waits, for a page that loads has no token yet.
+STRANGERS_A_SECOND, STRANGERS_AT_ONCE = 100.0, 100.0
+_LOOK_AGAIN_S = 0.05
 
+Refusal = tuple[int, str]
 POLICY = "; ".join(
     [
         "default-src 'self'",
@@ -56,13 +61,14 @@ class Guard:
         self._origins = {f"http://{host}" for host in self._hosts}
         self._is_public = is_public
         self.door = door
-        self._bucket = Bucket(REQUESTS_A_SECOND, AT_ONCE)
+        self._owners = Bucket(REQUESTS_A_SECOND, AT_ONCE)
+        self._strangers = Bucket(STRANGERS_A_SECOND, STRANGERS_AT_ONCE)
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         if scope["type"] == "lifespan":
             await self._inner(scope, receive, send)
             return
-        refusal = self._refusal(scope)
+        refusal = self._refusal(scope) or await self._refusal_by_token(scope)
         if refusal is None and _length(scope) > MOST_BODY_BYTES:
             refusal = (413, f"The request is larger than {MOST_BODY_BYTES} bytes.")
         if refusal is not None:
@@ -70,8 +76,8 @@ class Guard:
             return
         await self._inner(scope, _bounded(receive), _hardened(send))
 
-    def _refusal(self, scope: Scope) -> tuple[int, str] | None:
-        """Status and sentence, None for what may come in."""
+    def _refusal(self, scope: Scope) -> Refusal | None:
+        """Status and sentence for what comes from elsewhere, or leads there."""
         headers: dict[bytes, bytes] = dict(scope["headers"])
         names = [name for name, _ in scope["headers"]]
         if not scope["path"].startswith("/"):
@@ -81,26 +87,29 @@ class Guard:
         origin = headers.get(b"origin")
         if names.count(b"origin") > 1 or (origin is not None and origin.decode("latin-1") not in self._origins):
             return 403, "This server answers to its own pages alone; use the address that it printed."
-        if hmac.compare_digest(_token(scope, headers), self._token):
-            return self._refusal_of_owner(scope["client"])
-        if not self.door.may_ask(scope["client"]):
-            return 429, "Too many requests without the token; wait a second."
+        return None
+
+    async def _refusal_by_token(self, scope: Scope) -> Refusal | None:
+        """The same for what lacks the token; what has it waits for nobody else."""
+        if hmac.compare_digest(_token(scope), self._token):
+            if not self.door.welcome(scope["client"]):
+                return 503, "Too many pages are open; close some."
+            return None if self._owners.take() else (429, "Too many requests; wait a second.")
+        while not self._strangers.take():
+            await asyncio.sleep(_LOOK_AGAIN_S)
+            if not self.door.is_there(scope["client"]):
+                return 408, "The connection was closed."
         if scope["type"] == "http" and (scope["method"], scope["path"]) == ("POST", ENTRY):
             return None
         if scope["type"] == "http" and scope["method"] in ("GET", "HEAD") and self._is_public(scope["path"]):
             return None
         return 403, f"The token is missing or not this server's; {ANEW}"
 
-    def _refusal_of_owner(self, address: Address) -> tuple[int, str] | None:
-        """The same of a request with the token, whatever strangers do."""
-        if not self.door.welcome(address):
-            return 503, "Too many pages are open; close some."
-        return None if self._bucket.take() else (429, "Too many requests; wait a second.")
 
-
-def _token(scope: Scope, headers: dict[bytes, bytes]) -> bytes:
+def _token(scope: Scope) -> bytes:
     """What a request has as its token: in a header, or beside the subprotocol where a browser sends no header."""
     if scope["type"] == "http":
+        headers: dict[bytes, bytes] = dict(scope["headers"])
         return headers.get(b"x-greywhale-token", b"")
     offered: list[str] = scope["subprotocols"]
     if SUBPROTOCOL not in offered:
