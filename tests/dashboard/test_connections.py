@@ -18,7 +18,7 @@ from starlette.types import Receive, Scope, Send
 
 from greywhale.base import system
 from greywhale.dashboard import connections, guard, server
-from greywhale.dashboard.door import PATIENCE_S, Door
+from greywhale.dashboard.door import GRACE_S, PATIENCE_S, Door
 from greywhale.dashboard.guard import SUBPROTOCOL, Guard
 from tests.dashboard.browser import PATIENCE_S as HANGS_S
 from tests.dashboard.browser import Page
@@ -132,6 +132,25 @@ def test_strangers_wait_for_each_other_and_the_owner_for_none_of_them(monkeypatc
         assert own.take() == "there"
         assert select.select(strangers, [], [], 0)[0] == []
         for one in strangers:
+            one.close()
+
+
+def test_who_has_asked_for_something_has_its_time_before_others_come_in(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(guard, "STRANGERS_AT_ONCE", 0.0)  # nobody is answered
+    monkeypatch.setattr(guard, "STRANGERS_A_SECOND", 0.0)
+    now = [0.0]
+    with serving(Door(most_strangers=3, clock=lambda: now[0])) as page, page.open("/board") as own:
+        said = [b"GET / HTTP/1.1\r\nHost: 127.0.0.1:%d\r\n\r\n" % page.port, b"GET / HT", b"G"]
+        first = [connect(page, one) for one in said]
+        with connect(page), connect(page):  # these wait outside
+            for _ in range(5):
+                own.say({})
+                assert own.take() == "there"
+            assert select.select(first, [], [], 0)[0] == []
+            now[0] = GRACE_S + 1.0
+            assert rest(first[0]) == b""
+            assert page.ask("GET", "/state") == (200, b"there")
+        for one in first[1:]:
             one.close()
 
 

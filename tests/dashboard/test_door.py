@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import pytest
 
-from greywhale.dashboard.door import GRACE_S, PATIENCE_S, Door
+from greywhale.dashboard.door import FEWEST_STRANGERS, GRACE_S, PATIENCE_S, Door
 
 
 @dataclass
@@ -94,6 +94,20 @@ def test_a_stranger_has_its_time_and_one_that_waits_for_an_answer_gets_all_of_it
     served.busy = False
     entrance.door.look()
     assert [served.gone, late.gone] == [True, False]
+
+
+def test_where_descriptors_are_few_half_of_the_strangers_go_and_no_more_come_in() -> None:
+    entrance = Entrance(most_strangers=64, most_known=2)
+    known = entrance.enter(1, 2)
+    entrance.welcome(1, 2)
+    strangers = entrance.enter(*range(3, 3 + 4 * FEWEST_STRANGERS))
+    for left in (2 * FEWEST_STRANGERS, FEWEST_STRANGERS):
+        assert entrance.door.keep_fewer()
+        assert [one.gone for one in strangers] == [True] * (len(strangers) - left) + [False] * left
+    assert not entrance.door.keep_fewer()
+    [new] = entrance.enter(100)
+    assert [one.gone for one in strangers].count(False) == FEWEST_STRANGERS - 1
+    assert not any(one.gone for one in (new, *known))
 
 
 def test_the_same_is_told_once(caplog: pytest.LogCaptureFixture) -> None:

@@ -148,6 +148,8 @@ class Server(uvicorn.Server):
                 if error.errno not in _USED_UP:
                     raise
                 self._door.tell("the system has no descriptors left for connections; new pages wait for some.")
+                if self._door.keep_fewer():
+                    continue
                 self._spend_reserve(listener)
                 return
             if is_foreign(connection):

@@ -14,6 +14,7 @@ from typing import Protocol
 
 # A page that loads opens six connections without the token, and some browsers a few more for later.
 MOST_STRANGERS = 64
+FEWEST_STRANGERS = 6  # also where descriptors are few
 MOST_KNOWN = 64  # a page has two, and a moment's more for what it asks
 # A browser that opens a connection beforehand may use it seconds later.
 PATIENCE_S = 10.0
@@ -86,6 +87,15 @@ class Door:
     def enter(self, address: Address, visitor: Visitor) -> None:
         """A connection begins, as a stranger's."""
         self._strangers[address] = _Stranger(visitor, self._clock())
+
+    def keep_fewer(self) -> bool:
+        """Half as many strangers may stay from now on, for the system has no descriptors left; False where few do."""
+        self._forget_gone()
+        self._most_strangers = max(FEWEST_STRANGERS, len(self._strangers) // 2)
+        too_many = list(self._strangers.values())[: -self._most_strangers]
+        for stranger in too_many:
+            stranger.visitor.close()
+        return bool(too_many)
 
     def welcome(self, address: Address) -> bool:
         """It has shown the token; False where too many others have."""
