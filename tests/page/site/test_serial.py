@@ -23,6 +23,7 @@ from greywhale_sim.hands import ENDS_DEG
 from greywhale_sim.lockstep import LockStepBench
 from greywhale_sim.words import lock_step
 from tests.board.flash.hex_files import hex_text
+from tests.files.older_parameters import write_older
 from tests.page.barriers import DARK_AND_NARROW, require_no_barrier
 from tests.page.site.false_serial import connected
 from tests.page.site.serve_folder import Site
@@ -109,6 +110,10 @@ def test_a_board_is_watched_driven_and_changed(context: BrowserContext, site: Si
         expect(page.get_by_role("button", name="Apply")).to_be_disabled()
         backup = tmp_path / "backup.toml"
         parameter_file.save(backup, DEFAULTS.with_raw({"supply_mv": 12_000} | UNUSED))
+        older = tmp_path / "older.toml"
+        write_older(older, DEFAULTS.with_raw(UNUSED), 1)
+        page.get_by_label("Restore a parameter file").set_input_files(older)
+        expect(page.get_by_text("It is older and does not state")).to_be_visible()
         page.get_by_label("Restore a parameter file").set_input_files(backup)
         changes = page.get_by_role("list", name="Changes").get_by_role("listitem")
         expect(changes).to_have_count(2 + len(UNUSED))
