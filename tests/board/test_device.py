@@ -52,6 +52,24 @@ def test_a_board_that_falls_silent_is_named() -> None:
         assert board.asked(schema.StatusRequest) == 5
 
 
+class Sleepy(FakeBoard):
+    """Its host stands still each time that it has asked for something, for longer than it waits for an answer."""
+
+    asleep = False
+
+    def write(self, data: bytes) -> None:
+        super().write(data)
+        if self.asleep:
+            self.wait(0.5)
+
+
+def test_an_answer_that_waited_while_this_host_stood_still_is_heard() -> None:
+    with Sleepy() as board, open_device(board) as device:
+        board.asleep = True
+        assert device.status().state is State.DISABLED
+        assert board.asked(schema.StatusRequest) == 1
+
+
 def test_answers_to_earlier_requests_are_not_taken_for_this_one() -> None:
     with served() as (board, device):
         stale = schema.StatusReply(

@@ -9,7 +9,7 @@ import pytest
 
 from greywhale.base.errors import UserError
 from greywhale.board.record import LEASE_MS, record, record_led
-from greywhale.board.stream import stream
+from greywhale.board.stream import LeaseLostError, stream
 from greywhale.files.log import read_log
 from greywhale.files.trajectory import Trajectory
 from greywhale.protocol import schema
@@ -190,7 +190,7 @@ def test_ctrl_c_stops_the_motors_and_the_log_says_so(out: Path) -> None:
 
 
 def test_the_lease_running_out_is_named(tmp_path: Path) -> None:
-    with served() as (_, device), pytest.raises(UserError, match="the lease of 500 ms"):
+    with served() as (_, device), pytest.raises(LeaseLostError, match="board went on, .* lease of 500 ms"):
         device.renew = lambda: None  # type: ignore[method-assign]
         record(device, tmp_path / "log.csv", 10.0, enable=True)
     assert len(read_log(tmp_path / "log.csv").time) <= LEASE_MS

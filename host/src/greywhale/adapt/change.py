@@ -13,13 +13,12 @@ from collections.abc import Iterator
 import numpy as np
 
 from greywhale.board.device import Device
+from greywhale.board.record import BUSY_LEASE_MS
 from greywhale.board.stream import Received
 from greywhale.board.upload import apply_staged, staging
 from greywhale.protocol.firmware import ANGLE_LSB
 from greywhale.protocol.table import ParameterTable
 
-# A computer that also searches may stand still for longer than one that only records.
-LEASE_MS = 1000
 # The soft start of a set that runs for now, the shortest that the firmware takes; a stored set keeps its own.
 SOFT_START_MS = 100
 # One parameter is staged every so many samples: the answers take less time than the samples between.
@@ -80,6 +79,6 @@ class SetChanger:
         assert self._table is not None
         self._device.stop()
         apply_staged(self._device, self._table)
-        self._device.enable(LEASE_MS)
+        self._device.enable(BUSY_LEASE_MS)
         # What the board has staged now is not known for certain.
         self._table = None

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from greywhale.adapt.background import Background, background
-from greywhale.adapt.change import CLOSE_RAD, LEASE_MS, LOOK_EVERY, SOFT_START_MS, STILL_RAD, RestWatch, SetChanger
+from greywhale.adapt.change import CLOSE_RAD, LOOK_EVERY, SOFT_START_MS, STILL_RAD, RestWatch, SetChanger
 from greywhale.adapt.decide import Adaptation
 from greywhale.adapt.result import AdaptationResult, say
 from greywhale.adapt.stretch import Collector
@@ -21,6 +21,7 @@ from greywhale.base.errors import UserError
 from greywhale.base.study import Workers
 from greywhale.base.types import NotedProgress, show_no_progress
 from greywhale.board.device import Device, hold_ctrl_c
+from greywhale.board.record import BUSY_LEASE_MS
 from greywhale.board.stream import Received, stream, why_stopped
 from greywhale.board.upload import read_parameters, run_set, upload_set
 from greywhale.commission.hunting_stop import Hunting, HuntingStop
@@ -126,7 +127,7 @@ class _Session:
 
     def work(self) -> None:
         received = stream(self._device, 1)
-        with self._device.enabled(LEASE_MS):
+        with self._device.enabled(BUSY_LEASE_MS):
             pause = _Pause(MOST_START_TICKS)
             begun: int | None = None
             for one in received:

@@ -270,9 +270,12 @@ class Device:
         """Send a message again and again until its request is answered, whatever `ignored` failures come between."""
         for attempt in range(1, attempts + 1):
             logger.debug("%s: %s, attempt %d of %d: %s", self.port, name, attempt, attempts, message.hex())
+            looked = self._transport.clock()
             self._transport.write(message)
-            deadline = self._transport.clock() + wait_s
-            while self._transport.clock() < deadline:
+            deadline = looked + wait_s
+            # A computer that stood still for that long looks once more: the answer may have waited all the time.
+            while (now := self._transport.clock()) < deadline or now > looked + wait_s:
+                looked = now
                 with contextlib.suppress(*ignored):
                     self._receive()
                 self._check_restart()

@@ -32,6 +32,8 @@ Watch = Callable[[Received], None]
 
 # The motors go off this long after this host falls silent.
 LEASE_MS = 500
+# A computer that also searches may stand still for longer than one that only records.
+BUSY_LEASE_MS = 1000
 # With rarer samples the lease could not be renewed in time from the samples alone.
 _LONGEST_EVERY_ENABLED = 100
 _LONGEST_EVERY = 65535
@@ -137,12 +139,14 @@ def record_led(
     *,
     patient: bool = True,
     watch: Watch | None = None,
+    lease_ms: int = LEASE_MS,
 ) -> LedRecording:
     """Lead the arm along `motion`, from where it is, and record that; `table` is the table that runs, where it is
     known.
 
     A `patient` host slows the motion down for a follower that lags; another does not, so that all controllers are led
     along the same motion. `watch` sees every sample of the log, and what it raises ends the recording, motors off.
+    Where this host falls silent, they go off after `lease_ms`.
     """
     check_every_led(every)
     running = read_parameters(device, progress) if table is None else table
@@ -151,7 +155,7 @@ def record_led(
     origin = origin_of(device, running, every)
     with LogWriter(path, origin) as log:
         received = stream(device, every)
-        with device.leading(LEASE_MS) as begun:
+        with device.leading(lease_ms) as begun:
             pose = np.array(begun.reference) * ANGLE_LSB
             plan = Plan.of(motion, pose, limits, REST_S)
             leading = Leading(device, begun, plan, running.physical("tracking_limit") if patient else 0.0)

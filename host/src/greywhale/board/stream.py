@@ -25,6 +25,16 @@ _RENEWALS_PER_LEASE = 4
 _PAUSE_S = 1.0
 
 
+class LeaseLostError(UserError):
+    """The board went on and turned the motors off, because this computer was late; the same may be tried again."""
+
+    def __init__(self, port: str, lease_ms: int) -> None:
+        super().__init__(
+            f"{port}: the board went on, but this computer did not renew the lease of {lease_ms} ms in time, so the "
+            "motors went off: the computer was stopped, asleep or too busy; close other programs and try again."
+        )
+
+
 @dataclass(frozen=True, slots=True)
 class Received:
     """A sample, its time since the first one in ms ticks of the board, and how many were lost just before it."""
@@ -46,14 +56,16 @@ def _samples(device: Device, every: int) -> Iterator[Received]:
     elapsed = 0
     renewed: int | None = None
     heard = looked = device.clock()
+    paused = False
     while True:
         samples = device.samples()
         now = device.clock()
         if now > looked + _PAUSE_S:
             heard += now - looked  # this host stood still, not the board
+            paused = True
         looked = now
         if not samples and now > heard + silence_s:
-            raise _silence(device, last, silence_s)
+            raise _silence(device, last, silence_s, paused)
         if samples:
             newest = samples[-1].tick
             renewed = samples[0].tick if renewed is None else renewed
@@ -80,13 +92,14 @@ def _samples(device: Device, every: int) -> Iterator[Received]:
             yield Received(sample, elapsed, lost)
 
 
-def _silence(device: Device, last: int | None, silence_s: float) -> UserError:
+def _silence(device: Device, last: int | None, silence_s: float, paused: bool) -> UserError:
     status = device.status()
     if last is not None and status.tick < last:
         return UserError(
             f"{device.port}: the board restarted in the middle and its motors are off; check its supply and try again."
         )
-    if device.lease_ms and status.stop_reason is schema.StopReason.LEASE:
+    # Where this host looked all the time, the lease ended because no sample came to renew it by.
+    if paused and device.lease_ms and status.stop_reason is schema.StopReason.LEASE:
         return why_stopped(device)
     return UserError(
         f"{device.port}: the board answers but sent no sample for {silence_s:g} s (state {status.state.key}); "
@@ -100,10 +113,7 @@ def why_stopped(device: Device) -> UserError:
     if status.state is schema.State.FAULT or status.stop_reason is schema.StopReason.FAULT:
         return UserError(f"{device.port}: the board stopped the motors: {fault_text(status)}")
     if status.stop_reason is schema.StopReason.LEASE:
-        return UserError(
-            f"{device.port}: the board stopped the motors because this host did not renew the lease of "
-            f"{device.lease_ms} ms: was it stopped or asleep? If not, close other programs, or use a larger --every."
-        )
+        return LeaseLostError(device.port, device.lease_ms)
     return UserError(
         f"{device.port}: the motors went off in the middle: {lower_first(status.stop_reason.description)}; try again."
     )

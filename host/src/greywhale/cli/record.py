@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import contextlib
+from collections.abc import Callable, Iterator
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, NotRequired, TypedDict
@@ -24,6 +25,7 @@ from greywhale.board.record import (
     record,
     record_led,
 )
+from greywhale.board.stream import LeaseLostError
 from greywhale.board.upload import read_parameters
 from greywhale.cli import completion
 from greywhale.cli.countdown import prepare_motion, warn_page, yes_option
@@ -151,7 +153,7 @@ def command(
             with progress() as report:
                 recorded = record_through_losses(chosen, out, length, every, report)
         else:
-            with Device(chosen) as device, progress() as report:
+            with Device(chosen) as device, progress() as report, _naming_every():
                 if enable:
                     warn_page()
                 recorded = record(device, out, length, every, enable, report, disengaged)
@@ -216,6 +218,16 @@ def _refuse_without_excite(**given: object) -> None:
     for name, value in given.items():
         if value is not None and value != ():
             raise BadUsage(f"{_OF_EXCITE[name]} belongs to --excite; add that, or leave it out.")
+
+
+@contextlib.contextmanager
+def _naming_every() -> Iterator[None]:
+    """A computer that was late for its lease has more time with rarer samples."""
+    try:
+        yield
+    except LeaseLostError as late:
+        late.add_note("Or use a larger --every: 50 makes the lease a second.")
+        raise
 
 
 def describe(port: str, recording: Recording) -> str:
