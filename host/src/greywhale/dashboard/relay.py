@@ -20,6 +20,7 @@ from greywhale.dashboard.requests import Asked, Requests
 from greywhale.dashboard.stored import StoredSet
 from greywhale.protocol import schema
 from greywhale.protocol.frames import Frame, FrameDecoder, encode_frame
+from greywhale.protocol.ports import is_bench
 from greywhale.protocol.transport import Line
 
 # The motors go off when the page that drives says nothing for so long; the board's lease ends them if this host hangs.
@@ -243,7 +244,7 @@ class Relay:
             raise UserError(f"{self._board.port}: the board fell silent; check its cable and its supply.")
         if silent_s > TOLD_S and not self._told_silent:
             self._told_silent = True
-            self._tell_link(True, self._board.port, "The board is silent: is its supply on?")
+            self._tell_link(True, self._board.port, f"The board is silent: {_silencers(self._board.port)}?")
         if silent_s > ASK_AGAIN_S and not self._asked_again:
             self._asked_again = True
             self._ask_for_samples(1)
@@ -391,3 +392,8 @@ class Relay:
 
     def _pages(self) -> list[Client]:
         return [client for client in self._clients if client.verb is None]
+
+
+def _silencers(port: str) -> str:
+    """What may keep a board silent: a simulated one is no quicker than this computer."""
+    return "is its supply on" + (", or is this computer too busy to simulate it" if is_bench(port) else "")
