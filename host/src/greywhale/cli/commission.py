@@ -73,17 +73,11 @@ def command(
     require_folder(out, "logs, models and controllers", "report.html")
     request = CommissioningRequest(choose_port(port), out, ranges=chosen, threads=workers or 0, **options)
     warn = prepare_motion(request.port, yes)
-    try:
-        # Also while it computes: whoever stops it does not expect the arm to move again.
-        with Session.of(request.port):
-            warn()
-            with progress() as report:
-                outcome = commission(request, report)
-    except KeyboardInterrupt as interrupt:
-        interrupt.add_note(
-            f"The board keeps the controllers from before; the same command with --resume goes on in {out}."
-        )
-        raise
+    # Also while it computes: whoever stops it does not expect the arm to move again.
+    with Session.of(request.port):
+        warn()
+        with progress() as report:
+            outcome = commission(request, report)
     page = save_page(outcome, out / "report.html")
     answer: Answer = {"port": request.port, **outcome.as_dict(), "report": str(page)}
     show(as_json, answer, f"{outcome.text()}\n\nWritten: {page}")

@@ -6,6 +6,7 @@ board runs those from before again after its next start; opening its port restar
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -14,7 +15,8 @@ from pathlib import Path
 from greywhale.base.errors import UserError
 from greywhale.base.types import Floats, Progress
 from greywhale.board.device import Device, hold_ctrl_c
-from greywhale.board.record import pose_of, record_led
+from greywhale.board.record import BUSY_LEASE_MS, pose_of, record_led
+from greywhale.board.stream import LeaseLostError
 from greywhale.board.upload import read_parameters, run_set, upload_set
 from greywhale.commission.hunting_stop import Hunting, HuntingStop
 from greywhale.files.log import Log, read_evidence
@@ -22,9 +24,13 @@ from greywhale.files.trajectory import Trajectory
 from greywhale.protocol import schema
 from greywhale.protocol.table import ParameterTable
 
+# A motion is led so often where this computer was too busy to lead it to its end.
+TRIES = 3
 # Faults that a bad controller causes, on an arm that has just moved well. Every other fault is one of the arm or the
 # board, and ends the commissioning.
 OF_A_CONTROLLER = ("tracking", "unrest", "runaway", "stalled")
+
+logger = logging.getLogger(__name__)
 
 
 @dataclass(frozen=True)
@@ -54,11 +60,12 @@ class ArmOnPort:
     ) -> PlayedMotion:
         """Lead the arm along a motion with the controllers of a table, and put those from before back.
 
-        A `patient` rig waits for a follower that lags; a `watched` arm is stopped when a joint hunts.
+        A `patient` rig waits for a follower that lags; a `watched` arm is stopped when a joint hunts. What this
+        computer itself spoilt, because it was busy, says nothing about the arm: it is led again, a few times.
         """
         try:
             self._run(table)
-            played = self._record(motion, path, table, patient, HuntingStop() if watched else None)
+            played = self._lead(motion, path, table, patient, watched)
         except BaseException as error:
             self._put_back(error)
             raise
@@ -84,12 +91,30 @@ class ArmOnPort:
             run_set(self.device, table, self._progress)
             self._running = table
 
+    def _lead(
+        self, motion: Trajectory, path: Path, table: ParameterTable, patient: bool, watched: bool
+    ) -> PlayedMotion:
+        for attempt in range(2, TRIES + 1):
+            try:
+                return self._record(motion, path, table, patient, HuntingStop() if watched else None)
+            except LeaseLostError as late:
+                logger.info("%s", late.message)
+                self._progress(f"this computer was too busy: once more, attempt {attempt} of {TRIES}", 0.0)
+        try:
+            return self._record(motion, path, table, patient, HuntingStop() if watched else None)
+        except LeaseLostError as late:
+            late.add_note(f"It was tried {TRIES} times.")
+            raise
+
     def _record(
         self, motion: Trajectory, path: Path, table: ParameterTable, patient: bool, watch: HuntingStop | None
     ) -> PlayedMotion:
         path.unlink(missing_ok=True)
         try:
-            record_led(self.device, path, motion, progress=self._progress, table=table, patient=patient, watch=watch)
+            record_led(
+                self.device, path, motion, progress=self._progress, table=table, patient=patient, watch=watch,
+                lease_ms=BUSY_LEASE_MS,
+            )  # fmt: skip
         except Hunting as hunting:
             self.device.telemetry(0)
             return PlayedMotion(read_evidence(path), f"joint {hunting.joint} hunted", hunting.joint)

@@ -10,11 +10,15 @@ from pathlib import Path
 from typing import Any
 
 from greywhale.base.closing import Closing
-from greywhale.base.errors import BadUsage
+from greywhale.base.errors import BadUsage, UserError
 from greywhale.base.formats.checked_lines import CheckedLines, Kind
 from greywhale.base.formats.whole import make_folder
 
 NAME = "commission.journal"
+
+
+class AnewError(UserError):
+    """What the same command would meet again: `--resume` does not help."""
 
 
 class CommissioningJournal(Closing):

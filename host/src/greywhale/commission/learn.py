@@ -9,10 +9,9 @@ from pathlib import Path
 import numpy as np
 
 from greywhale.arm import ArmParameters
-from greywhale.base.errors import UserError
 from greywhale.base.types import Controllers, Floats, NotedProgress
 from greywhale.commission.evidence import Evidence
-from greywhale.commission.journal import CommissioningJournal
+from greywhale.commission.journal import AnewError, CommissioningJournal
 from greywhale.commission.predict import predict
 from greywhale.commission.request import CommissioningRequest
 from greywhale.commission.trials import Trial
@@ -136,7 +135,7 @@ def refuse_other_arm(arm: ArmParameters, name: str, before: Trial, table: Parame
     shares = apart / np.maximum(error, 1e-9)
     worst = int(np.argmax(shares))
     if shares[worst] > MOST_APART:
-        raise UserError(
+        raise AnewError(
             f"{name} is a model of another arm: joint {worst} is {np.sqrt(apart[worst]):.3g} rad (rms) away from where "
             f"it should be, though it follows its leader within {np.sqrt(error[worst]):.3g} rad; leave --model out."
         )

@@ -13,7 +13,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from greywhale.base.errors import UserError
+from greywhale.base.errors import BadUsage, UserError
 from greywhale.base.side_job import SideJob
 from greywhale.base.types import Controllers, Flags, NotedProgress, show_no_progress
 from greywhale.commission import learn, start
@@ -21,7 +21,7 @@ from greywhale.commission.arm_on_port import ArmOnPort, connected
 from greywhale.commission.choose import JointTrials, confirm
 from greywhale.commission.evidence import Evidence, failing_plants, to_fit, to_validate
 from greywhale.commission.foresee import foresee
-from greywhale.commission.journal import CommissioningJournal
+from greywhale.commission.journal import AnewError, CommissioningJournal
 from greywhale.commission.motions import JointRange, check_motion
 from greywhale.commission.request import CommissioningRequest
 from greywhale.commission.result import CommissioningResult, Round, errors_beside, predict_trial
@@ -79,7 +79,18 @@ class _Commissioning:
     def run(self) -> CommissioningResult:
         options = self.options
         with CommissioningJournal(options.out, options.facts(), options.resume) as self.book:
-            return self._run()
+            try:
+                return self._run()
+            except (UserError, KeyboardInterrupt) as ending:
+                self._say_how_to_go_on(ending)
+                raise
+
+    def _say_how_to_go_on(self, ending: UserError | KeyboardInterrupt) -> None:
+        again = f"The same command with --resume goes on in {self.options.out}."
+        if isinstance(ending, KeyboardInterrupt):
+            ending.add_note(f"The board keeps the controllers from before. {again}")
+        elif not isinstance(ending, AnewError | BadUsage) and "--resume" not in ending.message:
+            ending.add_note(again)
 
     def _run(self) -> CommissioningResult:
         number, learnt = 1, self._begin()
@@ -211,7 +222,7 @@ class _Commissioning:
                 self._design(self.room, table, self._report)
             played = arm().play(load_leader(self.book.path(EXCITING)), path, table, patient=True, watched=False)
             if played.stopped:
-                raise UserError(f"the arm cannot be excited: {played.stopped}; narrow the --range.")
+                raise AnewError(f"the arm cannot be excited: {played.stopped}; narrow the --range.")
             self.book.note("excite", {"log": path.name})
         return read_evidence(path)
 

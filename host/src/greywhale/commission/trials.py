@@ -8,11 +8,10 @@ from typing import Annotated, TypedDict
 
 import numpy as np
 
-from greywhale.base.errors import UserError
 from greywhale.base.types import Controllers, PerJoint
 from greywhale.commission.arm_on_port import ArmOnPort, PlayedMotion
 from greywhale.commission.foresee import Foresight
-from greywhale.commission.journal import CommissioningJournal
+from greywhale.commission.journal import AnewError, CommissioningJournal
 from greywhale.commission.judge import Limits, TrialVerdict, judge
 from greywhale.commission.measures import Measures, PartFacts, Traces, measure, traces_of
 from greywhale.commission.motions import Check
@@ -113,7 +112,7 @@ class Trials:
         """Play the check with the controllers from before."""
         trial = self._tried(rig, controllers_of(self.table), watched=False)
         if trial.stopped:
-            raise UserError(
+            raise AnewError(
                 f"with the controllers from before, the check ended early: {trial.stopped}; narrow the --range, or "
                 "upload calmer controllers first."
             )
@@ -135,7 +134,7 @@ class Trials:
         facts = self.book.get(name)
         if facts is not None:
             if facts["controllers"] != rows.tolist():
-                raise UserError(
+                raise AnewError(
                     f"{self.book.folder}: {name} of this commissioning was made by another version of greywhale, which "
                     "would go on differently; begin anew in another folder."
                 )
