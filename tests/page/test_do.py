@@ -264,6 +264,32 @@ def test_the_count_before_the_arm_moves_stands_over_every_view_and_is_stopped_th
     expect(field).to_have_value("")
 
 
+# Notes the page's sockets, so that a test can close them.
+SOCKETS = """{
+  const Usual = WebSocket;
+  window.sockets = [];
+  window.WebSocket = class extends Usual {
+    constructor(...given) {
+      super(...given);
+      window.sockets.push(this);
+    }
+  };
+}"""
+
+
+def test_a_count_ends_with_the_server_that_told_of_it(
+    context: BrowserContext, stage: Stage, tell: Callable[[Facts], None]
+) -> None:
+    with stages.visit(context, stage, SOCKETS) as visit:
+        visit.page.locator(".pill", has_text="disabled").wait_for()
+        tell({**facts_of("replay"), "countdown": 3})
+        count = visit.page.get_by_role("alertdialog")
+        expect(count).to_be_visible()
+        visit.page.evaluate("() => { for (const one of sockets) one.close(); }")
+        expect(count).to_be_hidden()
+    tell({**facts_of("replay"), "state": "stopped"})  # for other pages
+
+
 def test_nothing_bars_a_person(shared_page: Page) -> None:
     require_no_barrier(shared_page, LIGHT_AND_WIDE, DARK_AND_NARROW)
 

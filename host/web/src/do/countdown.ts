@@ -16,17 +16,24 @@ export class Countdown {
     this.element = el("div", { class: "countdown", hidden: true, attrs: { role: "alertdialog", "aria-label": "The arm is about to move" } },
       this.seconds, this.words, this.stop);
     jobs.listen((job) => this.heard(job));
+    session.changed.on(() => {
+      if (!session.link.open) this.count(null); // nobody would tell its end
+    });
   }
 
   private heard({ id, verb, state, countdown }: Job): void {
     const counts = state === "running" && countdown > 0;
     if (!counts && id !== this.counted) return;
     const begins = counts && this.counted === null;
-    this.counted = counts ? id : null;
-    this.session.counting = counts;
-    this.element.hidden = !counts;
+    this.count(counts ? id : null);
     setText(this.seconds, String(countdown));
     setText(this.words, `\`greywhale ${verb}\` is about to move the arm; the space bar or Stop keeps it still.`);
     if (begins) this.stop.focus();
+  }
+
+  private count(id: string | null): void {
+    this.counted = id;
+    this.session.counting = id !== null;
+    this.element.hidden = id === null;
   }
 }
