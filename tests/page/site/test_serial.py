@@ -199,7 +199,7 @@ def test_a_board_of_another_program_is_flashed_and_the_other_boards_image_refuse
     before = tmp_path / "before.hex"
     before.write_text(hex_text(bytes(len(image))))  # what was not erased stays zero
     words = ("--board", board, "--firmware", str(before))
-    with lock_step(*words) as bench, connected(context, site, bench) as (page, _):
+    with lock_step(*words) as bench, connected(context, site, bench) as (page, cable):
         page.evaluate(WATCH_REQUESTS)
         page.get_by_label("A HEX file in its place").set_input_files(parts / f"{other}.hex")
         press(page, "Flash")
@@ -207,7 +207,14 @@ def test_a_board_of_another_program_is_flashed_and_the_other_boards_image_refuse
         assert bench.server.board.flash()[: len(image)] == bytes(len(image))
         page.get_by_label("A HEX file in its place").set_input_files([])
         press(page, "Flash")
+        expect(page.get_by_role("main")).to_contain_text("Flashwriting")
+        cable.plugged = False
+        expect(page.get_by_role("alert")).to_contain_text("The bootloader stopped answering while writing")
+        assert bench.server.board.flash()[:2] == b"\xff\xcf", "a loop, where half of a program would do anything"
+        cable.plugged = True
+        page.evaluate("navigator.serial.plugIn()")
+        press(page, "Flash")
         expect(page.get_by_role("main")).to_contain_text(f"The Arduino {title} holds what was written; firmware")
         expect(page.locator(".pill")).to_have_text("disabled")
         assert bench.server.board.flash()[: len(image)] == image
-        assert page.evaluate("portOpenAtRequest") == [False, False]  # a bootloader does not wait for a slow network
+        assert page.evaluate("portOpenAtRequest") == 2 * [False, False]  # a bootloader does not wait for a slow network

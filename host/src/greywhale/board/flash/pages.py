@@ -107,8 +107,10 @@ def _write_first(port: str, dialect: Dialect, page: range, content: bytes, size:
     found = b""
     for _ in range(_ATTEMPTS):
         with enter_bootloader(port, dialect) as line:
+            memory = Memory(port, line)
+            memory.read(page)  # the first question may be lost, and asked again it does no harm
             line.write(page.start, content.ljust(size, ERASED))
-            found = Memory(port, line).read(page)
+            found = memory.read(page)
             if found == content:
                 line.leave()
                 return

@@ -5,10 +5,11 @@ import type { NamedText, Report } from "../../../port";
 import { bootloaderOf, type Bootloader } from "./bootloader";
 import { checkImage, ERASED, hex, readImage, type Image } from "./image";
 import { Talk } from "./talk";
-import { TARGETS, titleOf, type Target } from "./targets";
+import { TARGETS, titleOf, type Dialect, type Target } from "./targets";
 
 const ROUNDS = 3;
 const ATTEMPTS = 3;
+const LOOP = [0xff, 0xcf]; // rjmp to itself, with interrupts off and all pins inputs as after every restart
 
 /** Writes the file, or else the firmware of the board that answers; the board's name. The port is closed afterwards. */
 export async function flash(
@@ -16,18 +17,53 @@ export async function flash(
 ): Promise<string> {
   const images = await readImages(file, firmware);
   report("looking for the bootloader", 0);
-  const { talk, bootloader } = await findBootloader(port);
+  const { talk, dialect, bootloader } = await findBootloader(port);
+  let board: Target;
+  let image: Image;
   try {
-    const board = await boardOf(bootloader);
-    const image = images.get(board)!;
+    board = await boardOf(bootloader);
+    image = images.get(board)!;
     checkImage(image, board);
-    await writeImage(bootloader, image, board, report);
-    await verify(bootloader, image, board, report);
-    await bootloader.leave();
-    return titleOf(board);
+    const waiting = withLoop(image, board);
+    await writeImage(bootloader, waiting, board, report);
+    await verify(bootloader, waiting, board, report);
   } finally {
     await talk.close();
   }
+  await writeFirst(port, dialect, image.memory.subarray(0, board.page), board);
+  return titleOf(board);
+}
+
+/**
+ * The image with a loop as its first page, where a program starts: whatever ends the writing in the middle, the board does
+ * nothing, where half of a new program with half of an old one could do anything with the motors.
+ */
+function withLoop(image: Image, { page }: Target): Image {
+  const memory = image.memory.slice().fill(ERASED, 0, page);
+  memory.set(LOOP);
+  return { ...image, memory };
+}
+
+/** Writes the first page, and lets the board start. Once after each restart: a second write erases the Mega's next page. */
+async function writeFirst(port: SerialPort, dialect: Dialect, wanted: Uint8Array, { page }: Target): Promise<void> {
+  const content = new Uint8Array(page).fill(ERASED);
+  content.set(wanted);
+  for (let left = ATTEMPTS; left; left--) {
+    const talk = await Talk.open(port, dialect.baud);
+    try {
+      const bootloader = bootloaderOf(dialect.speaks, talk);
+      if (!await bootloader.enter()) continue;
+      await boardOf(bootloader); // the first question may be lost
+      await bootloader.write(0, content);
+      const found = await bootloader.read(0, page);
+      if (!found || content.some((byte, i) => byte !== found[i])) continue;
+      await bootloader.leave();
+      return;
+    } finally {
+      await talk.close();
+    }
+  }
+  throw new LinkError(stopped("writing", 0));
 }
 
 /** What each board would get, read before a port is opened: a bootloader waits for a second, and a network may be slower. */
@@ -38,13 +74,13 @@ async function readImages(
   return new Map(await Promise.all(TARGETS.map(async (board) => [board, chosen ?? readImage(await firmware(board.name))] as const)));
 }
 
-async function findBootloader(port: SerialPort): Promise<{ talk: Talk; bootloader: Bootloader }> {
+async function findBootloader(port: SerialPort): Promise<{ talk: Talk; dialect: Dialect; bootloader: Bootloader }> {
   const dialects = TARGETS.flatMap((board) => board.dialects);
   for (let round = 0; round < ROUNDS; round++) {
-    for (const { speaks, baud } of dialects) {
-      const talk = await Talk.open(port, baud);
-      const bootloader = bootloaderOf(speaks, talk);
-      if (await bootloader.enter()) return { talk, bootloader };
+    for (const dialect of dialects) {
+      const talk = await Talk.open(port, dialect.baud);
+      const bootloader = bootloaderOf(dialect.speaks, talk);
+      if (await bootloader.enter()) return { talk, dialect, bootloader };
       await talk.close();
     }
   }
