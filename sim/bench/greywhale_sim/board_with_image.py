@@ -5,7 +5,7 @@ For those who measure it or attack it, in a checkout.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -21,7 +21,8 @@ from greywhale_sim.wiring import BOARDS
 
 CYCLES_PER_TICK = 16_000
 PAINT = 0xA5
-PATIENCE_MS = 60
+PATIENCE_MS = 60  # a control period takes up to 50 ms, a tick 1 ms
+RUNS = 0  # what run_until says of a board that neither ended nor crashed
 SAVE_MS = 1000.0  # a save of a whole set takes up to 910 ms
 UNWATCHED = {"speed_limit": 0, "runaway_limit": 0, "stall_volts": 0}  # potentiometers here move as no arm does
 RUNNING = "_ZN3hal12_GLOBAL__N_17runningE"  # hal's flag, set from the timer's interrupt to the end of the tick
@@ -119,10 +120,18 @@ class BoardWithImage:
     # --- cycles
 
     def run_to(self, address: int) -> int:
-        """Run to an instruction; the cycle at which it begins."""
-        while self.board.pc != address:
-            self.board.run_until(self.board.cycle + 1)
+        """Run to an instruction; the cycle at which it begins. RuntimeError where the firmware does not come there."""
+        self._step_until(lambda: bool(self.board.pc == address), f"address {address:#x}")
         return int(self.board.cycle)
+
+    def _step_until(self, there: Callable[[], bool], where: str) -> None:
+        last = self.board.cycle + PATIENCE_MS * CYCLES_PER_TICK
+        while not there():
+            if self.board.run_until(self.board.cycle + 1) != RUNS or self.board.cycle > last:
+                raise RuntimeError(
+                    f"the firmware did not come to {where} within {PATIENCE_MS} ms of the board's time: it crashed, or "
+                    "the image is of other sources; build it again with `make firmware`"
+                )
 
     def next_entry(self) -> int:
         """Run to the tick's interrupt; its cycle."""
@@ -136,9 +145,8 @@ class BoardWithImage:
         running = next(symbol for name, symbol in self.symbols.items() if name.startswith(RUNNING)).address
         entry = self.next_entry()
         before = self.interrupt_cycles()
-        for wanted in (1, 0):
-            while self.board.peek(running, 1)[0] != wanted:
-                self.board.run_until(self.board.cycle + 1)
+        self._step_until(lambda: bool(self.board.peek(running, 1)[0]), "the work of its tick")
+        self._step_until(lambda: not self.board.peek(running, 1)[0], "the end of its tick")
         whole = int(self.board.cycle - entry)
         return whole, whole - (self.interrupt_cycles() - before)
 
