@@ -23,6 +23,12 @@ from tests.oracles.dask_cluster import Cluster, certify, cluster_of
 COMPARE = ("compare", "--json", "--functions", "sphere,ackley", "--methods", "gwo,de", "--dimensions", "3")
 
 
+@pytest.fixture(autouse=True)
+def patience(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A busy machine may take long to answer; only who waits for nobody is impatient."""
+    monkeypatch.setattr(cluster, "ANSWER_S", 60.0)
+
+
 @pytest.fixture(scope="module")
 def ours(tmp_path_factory: pytest.TempPathFactory) -> Iterator[dict[str, str]]:
     settings = certify(tmp_path_factory.mktemp("tls") / "ours")
@@ -55,7 +61,7 @@ def test_errors_of_tasks_come_back_with_the_tasks_name(two: Cluster, tmp_path: P
 def test_only_holders_of_the_authoritys_certificates_are_answered(
     two: Cluster, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(cluster, "WAIT_S", 1.0)
+    monkeypatch.setattr(cluster, "ANSWER_S", 1.0)
     with dask_config.set(certify(tmp_path / "others")):
         with pytest.raises(UserError, match=rf"^no Dask scheduler answers at {two.address}; .* of the same authority"):
             run_study(jobs.draws(1), ClusterWorkers(two.address))
@@ -125,7 +131,7 @@ def test_ctrl_c_takes_back_what_was_sent_and_keeps_what_is_done(ours: dict[str, 
 def test_a_scheduler_that_goes_away_ends_the_study_with_a_sentence(
     ours: dict[str, str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(cluster, "WAIT_S", 2.0)
+    monkeypatch.setattr(cluster, "ANSWER_S", 5.0)  # it is asked for again so long
     os.mkfifo(tmp_path / "who")
     long = Task("long", dask_cluster.hang_first, 3, {"folder": str(tmp_path), "count": 5})
     with cluster_of(1, ours) as running:
@@ -172,7 +178,7 @@ def test_unlike_workers_refuse_and_none_is_told(
             with pytest.raises(UserError, match=f"^{sentence}"):
                 run_study(jobs.draws(1), workers)
             running.workers.pop().kill()
-        monkeypatch.setattr(cluster, "WAIT_S", 1.0)
+        monkeypatch.setattr(cluster, "WORKER_S", 0.1)
         with pytest.raises(
             UserError, match=rf"^the Dask scheduler at {running.address} has no worker; start some: dask"
         ):

@@ -20,8 +20,10 @@ from greywhale.base.errors import BadUsage, UserError, os_reason
 P = ParamSpec("P")
 T = TypeVar("T")
 
-# For the scheduler to answer, and then for its first worker: an answer takes milliseconds, and a person waits.
-WAIT_S = 5.0
+# So long a scheduler may take to answer, and then its first worker to come: an answer takes milliseconds, and a person
+# waits.
+ANSWER_S = 5.0
+WORKER_S = 5.0
 
 
 class ClusterWorkers:
@@ -46,7 +48,7 @@ class ClusterWorkers:
     def executor(self) -> Iterator[Executor]:
         with _quiet(), self._client() as client:  # leaving it cancels what it asked for
             try:
-                client.wait_for_workers(1, timeout=WAIT_S)
+                client.wait_for_workers(1, timeout=WORKER_S)
             except TimeoutError:
                 raise UserError(
                     f"the Dask scheduler at {self.address} has no worker; start some: dask worker {self.address} "
@@ -55,7 +57,7 @@ class ClusterWorkers:
             yield _Executor(client, self._distributed)
 
     def _client(self) -> Any:
-        options = {"timeout": WAIT_S, "set_as_default": False, "security": self._security}
+        options = {"timeout": ANSWER_S, "set_as_default": False, "security": self._security}
         try:
             return self._distributed.Client(self.address, **options)
         except (OSError, ValueError):
