@@ -48,10 +48,10 @@ PART = Part(
         controllers and the numbers of travel that `tune` works out, and {PATIENCE_S:g} s from each. `rad` is the
         greatest way by which the true error has grown until the motors were off or the time was over; "{FAR}" counts
         the trials with more. Part of that is the lag of a follower with nothing wrong, see the first rows. A reading
-        that drifts, or loses gain slowly, is followed: friction hides the voltage which that takes, so the error is
-        what the reading is wrong by. A reading that comes late, or turns too little, lets the joint overshoot. A joint
-        whose frozen reading holds it back stands still, but with its motor reversed too, what should hold it against
-        gravity drives it. Where this matters, keep the emergency stop at hand, and look at the arm.""",
+        that drifts, or loses gain slowly, is followed: by its reading the joint moves about as its voltage says, so the
+        error is what the reading is wrong by. A reading that comes late, or turns too little, lets the joint overshoot.
+        A joint whose frozen reading holds it back stands still, but with its motor reversed too, what should hold it
+        against gravity drives it. Where this matters, keep the emergency stop at hand, and look at the arm.""",
     (*faults.PART.depends, "tools/attack/slow_lies.py", "tools/attack/parts/faults.py"),
     pieces,
     run,
