@@ -7,6 +7,7 @@ import math
 import os
 import signal
 from pathlib import Path
+from typing import Self
 
 import pytest
 import serial
@@ -50,6 +51,22 @@ def test_a_board_that_falls_silent_is_named() -> None:
         with pytest.raises(NoAnswerError, match=rf"^{board.port}: .*status, sent 5 times"):
             device.status()
         assert board.asked(schema.StatusRequest) == 5
+
+
+class InItsBootloader(FakeBoard):
+    """Another program has left it there; the firmware runs after a restart."""
+
+    def open(self, restart: bool, baud: int) -> Self:
+        self.faults.silent = not restart
+        return super().open(restart, baud)
+
+
+def test_a_board_that_is_silent_without_a_restart_is_restarted() -> None:
+    with InItsBootloader() as board:
+        open_device(board).close()
+        with Device(board.port, quiet_s=0.0, patience_s=0.5, restart=False) as device:
+            assert device.restarted
+            assert device.status().state is State.DISABLED
 
 
 class Sleepy(FakeBoard):

@@ -86,9 +86,15 @@ class Device:
             self._session = held.enter_context(Session.of(port))
             held.callback(self._session.detach)
             self._transport: Line = open_line(port, restart)
-            held.callback(self._transport.close)
+            held.callback(lambda: self._transport.close())
             self._session.attach(self._send_stop, self._send_clutch)
-            self.hello: schema.HelloReply = self._greet(quiet_s if self.restarted else 0.0, patience_s)
+            try:
+                self.hello: schema.HelloReply = self._greet(quiet_s if self.restarted else 0.0, patience_s)
+            except NoAnswerError as silence:
+                if self.restarted:
+                    raise
+                self._restart(silence)
+                self.hello = self._greet(quiet_s, patience_s)
             self._held = held.pop_all()
         logger.info(
             "%s: %s, firmware %s, parameters 0x%04x, %s",
@@ -345,6 +351,13 @@ class Device:
             return f"The stop is not confirmed; the board stops by itself within {self.lease_ms} ms."
         return "The stop is not confirmed: switch the motors' supply off."
 
+    def _restart(self, silence: NoAnswerError) -> None:
+        """Open the port anew: another program may have left the board in its bootloader, which only that ends."""
+        self._transport.close()
+        self._transport = open_line(self.port)
+        if not self.restarted:  # a lent line
+            raise silence
+
     def _greet(self, quiet_s: float, patience_s: float) -> schema.HelloReply:
         clock = self._transport.clock
         opened = clock()
@@ -389,7 +402,7 @@ class Device:
                 f"{self.port}: something sends data, but no greywhale firmware answers within {patience_s:g} s; "
                 f"flash the board with `greywhale flash --port {self.port}`, or name another port."
             )
-        return UserError(
+        return NoAnswerError(
             f"{self.port}: nothing answers within {patience_s:g} s; the board has probably no greywhale firmware: "
             f"flash it with `greywhale flash --port {self.port}`, or name another port."
         )
