@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -61,6 +64,21 @@ def test_the_second_user_is_neither_this_process_nor_who_made_the_port() -> None
         with opened(port) as process:
             assert (second_user_of(port) or "").startswith(f"process {process} (")
         bench.communicate(b"\n")
+
+
+def test_a_process_that_ends_while_all_are_looked_at_is_passed_over(monkeypatch: pytest.MonkeyPatch) -> None:
+    def without_the_first(look: Callable[..., Any]) -> Callable[..., Any]:
+        def look_again(path: Any) -> Any:
+            if os.fspath(path) == "/proc/1/fd":
+                raise FileNotFoundError(errno.ENOENT, "ended", path)
+            return look(path)
+
+        return look_again
+
+    monkeypatch.setattr(os, "scandir", without_the_first(os.scandir))
+    monkeypatch.setattr(os, "listdir", without_the_first(os.listdir))
+    with PortBoard() as board, opened(board.port) as process:
+        assert (second_user_of(board.port) or "").startswith(f"process {process} (")
 
 
 @pytest.mark.parametrize(

@@ -99,13 +99,22 @@ def _users(port: str) -> Iterator[int]:
         device = system.device_in(os.stat(port))
     except OSError:
         return
-    links = list(PROCESSES.glob("[0-9]*/fd/*")) if device else []
+    links = _open_files() if device else []
     ours = {os.getpid(), *_makers(links, system.pseudo_terminal_of(device))}
     for link in links:
         with contextlib.suppress(OSError):  # it has ended, or closed it
             pid = int(link.parts[2])
             if pid not in ours and system.device_in(os.stat(link)) == device:
                 yield pid
+
+
+def _open_files() -> list[Path]:
+    """What the processes that the system shows to this user have open; some end meanwhile."""
+    links: list[Path] = []
+    for process in PROCESSES.glob("[0-9]*"):
+        with contextlib.suppress(OSError):
+            links += (process / "fd").iterdir()
+    return links
 
 
 def _makers(links: Iterable[Path], pseudo_terminal: int | None) -> Iterator[int]:
