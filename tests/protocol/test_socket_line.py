@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import os
 import socket
 from collections.abc import Iterator
 
 import pytest
 
 from greywhale.base.errors import UserError
-from greywhale.protocol.lines import device_of, open_line
+from greywhale.board import meeting
+from greywhale.board.session import Session
+from greywhale.protocol.lines import open_line
 from greywhale.protocol.socket_line import SocketLine
 from greywhale.protocol.transport import PortLostError
 
@@ -65,5 +68,12 @@ def test_what_is_no_address_is_refused_by_name(port: str) -> None:
         open_line(port)
 
 
-def test_a_session_on_it_can_be_found_and_stopped() -> None:
-    assert device_of("socket://127.0.0.1:5000") == "socket://127.0.0.1:5000"
+def test_greywhale_stop_finds_the_session_that_holds_it() -> None:
+    port = "socket://127.0.0.1:5000"
+    with Session.of(port):
+        found = meeting.find(port, 1.0)
+        assert found is not None
+        client, peer = found
+        client.close()
+        assert peer.pid == os.getpid()
+    assert meeting.find(port, 0.0) is None

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import select
 import socket
+import threading
 import time
 from urllib.parse import urlsplit
 
@@ -29,6 +30,7 @@ class SocketLine:
         """Connect, or take a connection that there is."""
         self._port = port
         self._connection = connection or _connect(port)
+        self._writing = threading.Lock()  # two threads never mix their frames
 
     def read(self) -> bytes:
         """Return what has arrived; wait a moment when nothing has, and then return perhaps nothing."""
@@ -45,8 +47,9 @@ class SocketLine:
 
     def write(self, data: bytes) -> None:
         try:
-            self._connection.settimeout(self.write_wait_s)
-            self._connection.sendall(data)
+            with self._writing:
+                self._connection.settimeout(self.write_wait_s)
+                self._connection.sendall(data)
         except OSError:
             raise self._lost() from None
 
