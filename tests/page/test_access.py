@@ -22,6 +22,7 @@ def require_refused(page: Page, address: str, sentence: str) -> None:
     page.goto(address)
     expect(page.locator(".empty")).to_contain_text(sentence)
     expect(page.locator(".empty")).to_contain_text("press Enter in the terminal of `greywhale dashboard`")
+    expect(page.locator(".empty")).not_to_contain_text("Plug the board in")
     expect(page.get_by_role("button", name="Enable")).to_be_disabled()
 
 

@@ -24,10 +24,11 @@ void findAccess().then(begin);
 function begin({ token, sentence }: Access): void {
   const board = new ServerBoard(token, sentence);
   const session = new Session(board);
-  const shell = new Shell(session, [new LiveView(session)], [
+  const remedy = [
     "Plug the board in by USB: this page takes it by itself. Without a board, start ", el("code", {}, "greywhale dashboard --sim"),
     ": it brings a simulated arm with the real firmware.",
-  ]);
+  ];
+  const shell = new Shell(session, [new LiveView(session)], token ? remedy : []); // without a token no board would help
   if (token) addHost(shell, session, new ServerHost(token, () => board.page));
 }
 
