@@ -62,7 +62,7 @@ def build_board(options: BenchOptions) -> Any:
         raise UserError("a blank board has no firmware: leave out --blank or --firmware.", BAD_USAGE)
     wiring = wiring_of(options.board)
     if not wiring.bootloader.is_file():
-        raise UserError(f"{wiring.bootloader}: the bootloader is missing; install the Debian package arduino-core-avr.")
+        raise UserError(f"{wiring.bootloader}: the bootloader is missing; install greywhale anew.")
     board = Board(wiring.mcu)
     load_hex(board, wiring.bootloader, bootloader=True)
     if not options.blank:
