@@ -154,6 +154,16 @@ def test_who_has_asked_for_something_has_its_time_before_others_come_in(monkeypa
             one.close()
 
 
+def test_a_stranger_is_closed_for_another_one_alone() -> None:
+    with serving(Door(most_strangers=1)) as page, page.open("/board") as own:
+        slow = connect(page)
+        for _ in range(5):  # meanwhile it is accepted
+            own.say({})
+            assert own.take() == "there"
+        slow.sendall(b"GET / HTTP/1.1\r\nHost: 127.0.0.1:%d\r\nConnection: close\r\n\r\n" % page.port)
+        assert rest(slow).endswith(b"there")
+
+
 def test_nobody_without_the_token_is_refused_for_others_requests(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(guard, "STRANGERS_AT_ONCE", 2.0)
     monkeypatch.setattr(guard, "STRANGERS_A_SECOND", 1000.0)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import pytest
 
-from greywhale.dashboard.door import FEWEST_STRANGERS, GRACE_S, PATIENCE_S, Door
+from greywhale.dashboard.door import FEWEST_STRANGERS, GRACE_S, MOMENT_S, PATIENCE_S, Door
 
 
 @dataclass
@@ -34,6 +34,7 @@ class Entrance:
         for port, visitor in zip(ports, visitors, strict=True):
             assert self.door.make_room()
             self.door.enter(("127.0.0.1", port), visitor)
+            self.now_s += MOMENT_S
         return visitors
 
     def welcome(self, *ports: int) -> list[bool]:
@@ -61,6 +62,18 @@ def test_a_stranger_that_waits_for_an_answer_has_its_time_before_another_one_com
         if goes is not None:
             assert [one.gone for one in first].count(True) == goes + 1
             entrance.enter(4 + goes, busy=True)
+
+
+def test_a_stranger_that_has_just_come_in_is_not_closed_before_it_can_speak() -> None:
+    entrance = Entrance()
+    entrance.enter(1, 2, busy=True)
+    [silent] = entrance.enter(3)
+    entrance.now_s -= 0.5 * MOMENT_S
+    assert not entrance.door.make_room()
+    assert not silent.gone
+    entrance.now_s += 0.5 * MOMENT_S
+    assert entrance.door.make_room()
+    assert silent.gone
 
 
 def test_strangers_push_out_nobody_who_has_shown_the_token() -> None:

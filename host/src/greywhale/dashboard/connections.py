@@ -137,30 +137,29 @@ class Server(uvicorn.Server):
             loop.call_later(pause_s, self._listen)
 
     def _accept(self, listener: socket.socket) -> None:
-        while self._door.make_room() and self._accepted.take():
-            try:
-                connection, address = listener.accept()
-            except ConnectionAbortedError:
-                continue
-            except BlockingIOError:
-                return
-            except OSError as error:
-                if error.errno not in _USED_UP:
-                    raise
-                self._door.tell("the system has no descriptors left for connections; new pages wait for some.")
-                if self._door.keep_fewer():
-                    continue
+        """Take the connection that waits first: one alone, as only of it it is known that room must be made for it."""
+        if not (self._door.make_room() and self._accepted.take()):
+            self._rest(_AGAIN_S)
+            return
+        try:
+            connection, address = listener.accept()
+        except (BlockingIOError, ConnectionAbortedError):
+            return
+        except OSError as error:
+            if error.errno not in _USED_UP:
+                raise
+            self._door.tell("the system has no descriptors left for connections; new pages wait for some.")
+            if not self._door.keep_fewer():
                 self._spend_reserve(listener)
-                return
-            if is_foreign(connection):
-                self._door.tell("another user of this machine tried to connect to the dashboard, and was refused.")
-                connection.close()
-                continue
-            connection.setblocking(False)
-            arrival = Arrival(connection)
-            self._door.enter(address, arrival)
-            self._hear(arrival)  # who waited to be accepted has said something meanwhile
-        self._rest(_AGAIN_S)
+            return
+        if is_foreign(connection):
+            self._door.tell("another user of this machine tried to connect to the dashboard, and was refused.")
+            connection.close()
+            return
+        connection.setblocking(False)
+        arrival = Arrival(connection)
+        self._door.enter(address, arrival)
+        self._hear(arrival)  # who waited to be accepted has said something meanwhile
 
     def _spend_reserve(self, listener: socket.socket) -> None:
         """Close the connection that waits first, and let those behind it wait."""

@@ -20,6 +20,8 @@ MOST_KNOWN = 64  # a page has two, and a moment's more for what it asks
 PATIENCE_S = 10.0
 # In this time a stranger that asks for something gets it, and is not closed for another one.
 GRACE_S = 2.0
+# In this time a stranger that has just come in says what it wants: a browser does so within a millisecond.
+MOMENT_S = 0.05
 
 Address = tuple[str, int]
 logger = logging.getLogger(__name__)
@@ -66,21 +68,19 @@ class Door:
 
     def make_room(self) -> bool:
         """Whether one more may enter. Of too many strangers the oldest is closed that waits for no answer, or else the
-        oldest of all that has had its time.
+        oldest of all; but none that has not had its time.
         """
         self._forget_gone()
         if len(self._strangers) < self._most_strangers:
             return True
         self.tell(f"more than {self._most_strangers} connections show no token; the oldest of them are closed.")
-        then_s = self._clock() - GRACE_S
-        for stranger in self._strangers.values():
-            if not stranger.visitor.waits:
-                break
-        else:
-            stranger = next(iter(self._strangers.values()))
-            if stranger.since_s > then_s:
-                return False
-        stranger.visitor.close()
+        now_s = self._clock()
+        strangers = self._strangers.values()
+        idle = [one.visitor for one in strangers if one.since_s <= now_s - MOMENT_S and not one.visitor.waits]
+        served = [one.visitor for one in strangers if one.since_s <= now_s - GRACE_S]
+        if not (closed := [*idle, *served][:1]):
+            return False
+        closed[0].close()
         self._forget_gone()
         return True
 
