@@ -8,8 +8,11 @@ from typing import Any
 import numpy as np
 import pytest
 
+from greywhale.arm import Arm
 from greywhale.base.types import Floats
+from greywhale.files.arm import default_arm
 from tools.attack.arm_on_board import SLICE_S
+from tools.attack.load import Watch
 from tools.attack.part import add_up
 from tools.attack.parts.lies import FAR, run
 from tools.attack.pot_lies import MIDDLE_MV, MV_PER_RAD
@@ -67,6 +70,23 @@ def test_plugs_are_exchanged_from_where_both_read_alike() -> None:
         assert told(name, 1.0)[[FOLLOWER, other]] == pytest.approx(angles[[other, FOLLOWER]])
         apart = told(name, 0.0)
         assert apart == pytest.approx(true(0.0, 0.3))
+
+
+@pytest.mark.parametrize("hidden_v", [0.0, 2.0, -4.0])
+def test_the_load_that_looks_the_same_is_what_the_readings_do_not_explain(hidden_v: float) -> None:
+    arm = Arm(default_arm())
+    joint, supply_v = 3, arm.parameters.drive.supply
+    at: Any = SimpleNamespace(supply_v=supply_v)
+    watch = Watch(at)
+    for step in range(8000):
+        given = 6.0 * np.sin(2 * np.pi * step * SLICE_S) * (np.arange(4) == joint)
+        told = given + hidden_v * (np.arange(4) == joint)
+        at.millivolts = np.tile(MIDDLE_MV + MV_PER_RAD * arm.step(given, SLICE_S), 2)
+        outputs = np.array([1.0, *np.abs(told) / supply_v, *(told > 0)])
+        at.board = SimpleNamespace(outputs=outputs.copy)
+        watch.note()
+    assert watch.load_v(joint) == pytest.approx(abs(hidden_v), abs=0.6)
+    assert watch.load_v(0) == pytest.approx(0.0, abs=0.1)
 
 
 @pytest.mark.slow

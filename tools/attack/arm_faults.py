@@ -7,6 +7,7 @@ order, and at a random moment a fault. A leader that a person moves makes the er
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -49,7 +50,7 @@ def reverse_motor(arm: ArmOnBoard, joint: int) -> None:
     arm.motor_signs[joint] = -1.0
 
 
-def _block(arm: ArmOnBoard, joint: int) -> None:
+def block(arm: ArmOnBoard, joint: int) -> None:
     arm.stuck[joint] = float(arm.angles[joint])
 
 
@@ -143,7 +144,7 @@ def faults() -> dict[str, Inject]:
         "follower touches neighbour": pot_lies.touch_neighbour,
         "motor reversed": reverse_motor,
         "follower pot reversed": pot_lies.reverse,
-        "joint blocked": _block,
+        "joint blocked": block,
     }
 
 
@@ -191,8 +192,14 @@ def begin(arm: ArmOnBoard) -> None:
     arm.shift_phase()
 
 
-def suffer(arm: ArmOnBoard, inject: Inject, joint: int, patience_s: float = PATIENCE_S) -> Trial:
-    """From the fault to the motors off; the arm can be used again."""
+def suffer(
+    arm: ArmOnBoard,
+    inject: Inject,
+    joint: int,
+    patience_s: float = PATIENCE_S,
+    note: Callable[[], None] = lambda: None,
+) -> Trial:
+    """From the fault to the motors off; the arm can be used again. `note` is done after each slice with motors on."""
     before = abs(arm.true_error[joint])
     begun, place, wrong, gone = arm.board.cycle, arm.angles[joint], 0.0, 0.0
     inject(arm, joint)
@@ -202,6 +209,7 @@ def suffer(arm: ArmOnBoard, inject: Inject, joint: int, patience_s: float = PATI
         if not arm.motors_on:
             off_ms = (arm.board.cycle - begun) / CYCLES_PER_TICK
             break
+        note()
         way = abs(arm.angles[joint] - place)
         wrong, gone = max(wrong, min(way, abs(arm.true_error[joint]) - before)), max(gone, way)
     arm.pot_fault = None

@@ -6,7 +6,7 @@ from collections import deque
 from collections.abc import Callable
 
 from greywhale.base.types import Floats
-from tools.attack.arm_faults import reverse_motor
+from tools.attack.arm_faults import block, reverse_motor
 from tools.attack.arm_on_board import SLICE_S, ArmOnBoard, PotFault
 from tools.attack.pot_lies import MIDDLE_MV, Inject, freeze, jump, leader, reverse, shift
 
@@ -112,7 +112,10 @@ def both(*injects: tuple[Inject, int]) -> Inject:
 
 def slow_lies() -> dict[str, Inject]:
     """All of them by name."""
-    found: dict[str, Inject] = {"nothing wrong, for comparison": lambda arm, joint: None}
+    found: dict[str, Inject] = {
+        "nothing wrong, for comparison": lambda arm, joint: None,
+        "held by a hand, for comparison": block,
+    }
     found |= {f"follower drifts by {rate:g} rad/s": shift(follower, drift(rate)) for rate in (0.05, 0.2, 0.5, 1.0)}
     found |= {
         "follower's gain falls to 0.5 in 2 s": lose_gain(0.5, 2.0),

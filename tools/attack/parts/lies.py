@@ -6,9 +6,12 @@ from functools import partial
 
 from greywhale_sim.wiring import BOARDS
 from tools.attack.arm_faults import Trial, arm_at_work, begin, suffer
+from tools.attack.arm_on_board import ArmOnBoard
 from tools.attack.copies import in_a_copy
+from tools.attack.load import Watch
 from tools.attack.part import Part, Piece, Row, split
 from tools.attack.parts import faults
+from tools.attack.pot_lies import Inject
 from tools.attack.slow_lies import slow_lies
 
 MOMENTS, PER_PIECE = 40, 5
@@ -16,11 +19,18 @@ PATIENCE_S = 3.0
 FAR = f"beyond {faults.FARTHEST_RAD} rad"
 
 
-def count(board: str, name: str, known: str, trial: Trial) -> Row:
+def try_lie(arm: ArmOnBoard, inject: Inject, joint: int) -> tuple[Trial, float]:
+    """A trial, and the load (V) under which an honest joint would look the same to the board."""
+    watch = Watch(arm)
+    trial = suffer(arm, inject, joint, PATIENCE_S, watch.note)
+    return trial, watch.load_v(joint)
+
+
+def count(board: str, name: str, known: str, trial: Trial, load_v: float) -> Row:
     seen = {trial.fault if trial.off_ms is not None else "motors stayed on": 1}
     if trial.wrong_rad > faults.FARTHEST_RAD:
         seen[FAR] = 1
-    return Row(f"{board}: {name}, {known}", 1, 0, seen, {"rad": round(trial.wrong_rad, 2)})
+    return Row(f"{board}: {name}, {known}", 1, 0, seen, {"rad": round(trial.wrong_rad, 2), "V": round(load_v, 1)})
 
 
 def run(piece: Piece) -> list[Row]:
@@ -31,8 +41,8 @@ def run(piece: Piece) -> list[Row]:
         begin(arm)
         for name, inject in slow_lies().items():
             if name in piece.get("faults", slow_lies()):
-                trial = in_a_copy(partial(suffer, arm, inject, moment % 4, PATIENCE_S))
-                rows.append(count(piece["board"], name, known, trial))
+                trial, load_v = in_a_copy(partial(try_lie, arm, inject, moment % 4))
+                rows.append(count(piece["board"], name, known, trial, load_v))
     return rows
 
 
@@ -47,12 +57,15 @@ PART = Part(
         arm, motions and controllers are those of the faults above, with {MOMENTS} moments, half of them with the tuned
         controllers and the numbers of travel that `tune` works out, and {PATIENCE_S:g} s from each. `rad` is the
         greatest way by which the true error has grown until the motors were off or the time was over; "{FAR}" counts
-        the trials with more. Part of that is the lag of a follower with nothing wrong, see the first rows. A reading
-        that drifts, or loses gain slowly, is followed: by its reading the joint moves about as its voltage says, so the
-        error is what the reading is wrong by. A reading that comes late, or turns too little, lets the joint overshoot.
-        A joint whose frozen reading holds it back stands still, but with its motor reversed too, what should hold it
-        against gravity drives it. Where this matters, keep the emergency stop at hand, and look at the arm.""",
-    (*faults.PART.depends, "tools/attack/slow_lies.py", "tools/attack/parts/faults.py"),
+        the trials with more. Part of that is the lag of a follower with nothing wrong, see the first rows. `V` is the
+        load, in volts at the motor, under which an honest joint would show the same readings at the same voltages, 95 %
+        of the time: where that is no more than of a joint that a hand holds, no check can tell the lie from the hand. A
+        reading that drifts, or loses gain slowly, is followed: by its reading the joint moves about as its voltage
+        says, so the error is what the reading is wrong by. A reading that comes late, or turns too little, lets the
+        joint overshoot. A joint whose frozen reading holds it back stands still, but with its motor reversed too, what
+        should hold it against gravity drives it. Where this matters, keep the emergency stop at hand, and look at the
+        arm.""",
+    (*faults.PART.depends, "tools/attack/load.py", "tools/attack/slow_lies.py", "tools/attack/parts/faults.py"),
     pieces,
     run,
 )
