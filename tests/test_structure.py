@@ -18,6 +18,17 @@ ROOMS = [
     *("base", "protocol", "arm", "files", "fuzzy", "motion", "simulate", "board", "pictures"),
     *("optimise", "identify", "tune", "commission", "adapt", "reproduce", "dashboard", "cli"),
 ]
+PAGE = ROOT / "host" / "web" / "src"
+# The page's rooms in the same order. Views know the interfaces in session, and no source behind them.
+PAGE_ROOMS = ["link", "parts", "session", "files", "tuner", "sources", "views", "entries"]
+UNKNOWN_TO_VIEWS = {"sources", "tuner"}
+# A rule that two languages hold is written twice: these files of the page repeat one of Python's, and no others may.
+TWINS = {
+    *("files/controller_file.ts", "files/parameter_file.ts", "session/law.ts", "sources/serial/flash/image.ts"),
+    *("sources/serial/flash/targets.ts", "tuner/costs.ts", "tuner/search.ts", "tuner/space.ts", "tuner/unrest.ts"),
+    *("tuner/wolf_whale.ts", "views/calibrate/motors.ts", "views/calibrate/solve.ts", "views/calibrate/sweep.ts"),
+    "views/calibrate/words.ts",
+}
 # Extension modules whose names begin with an underscore. Both are rooms of their own with public classes and functions.
 EXTENSIONS = {"_native", "_board"}
 
@@ -93,6 +104,36 @@ def test_a_room_imports_only_rooms_below_it() -> None:
             below = {"_native", *ROOMS[: ROOMS.index(room) + 1]}
             beyond = {target for target in targets if target.split(".")[1] not in below}
             assert not beyond, f"{name} imports {', '.join(sorted(beyond))}"
+
+
+def page_graph() -> dict[str, set[str]]:
+    """Every module of the page with those that it imports, by their paths, for the type checker too."""
+    found = {}
+    for path in PAGE.rglob("*.ts"):
+        named = re.findall(r'(?:from |import\(|import )"(\.[^"]*)"', path.read_text(encoding="utf-8"))
+        modules = [(path.parent / name).resolve().relative_to(PAGE) for name in named]
+        found[str(path.relative_to(PAGE))] = {f"{module}.ts" for module in modules if not module.suffix}
+    return found
+
+
+def test_the_page_imports_only_rooms_below_and_never_in_a_circle() -> None:
+    edges = page_graph()
+    assert {name.split("/")[0] for name in edges} == set(PAGE_ROOMS)
+    assert circle(edges) == []
+    for name, targets in edges.items():
+        assert targets <= set(edges), name
+        room = name.split("/")[0]
+        below = set(PAGE_ROOMS[: PAGE_ROOMS.index(room) + 1]) - (UNKNOWN_TO_VIEWS if room == "views" else set())
+        beyond = {target for target in targets if target.split("/")[0] not in below}
+        assert not beyond, f"{name} imports {', '.join(sorted(beyond))}"
+
+
+def test_the_page_repeats_no_further_file_of_python() -> None:
+    """A file that repeats one names it; whoever adds one, adds a rule to keep twice."""
+    names = re.compile(r"(?<![a-z_/])(?!tools/)[a-z_]+/[a-z_/]+\.py\b")
+    assert {
+        str(path.relative_to(PAGE)) for path in PAGE.rglob("*.ts") if names.search(path.read_text("utf-8"))
+    } == TWINS
 
 
 @pytest.mark.parametrize(

@@ -29,7 +29,7 @@ async function buildPage(out, entryPoints) {
 }
 
 const WORKERS = { worker: "src/sources/in_page/worker.ts", tuner: "src/tuner/worker.ts" };
-const SITE = { page: "src/site.ts", ...WORKERS, offline: "src/offline/service_worker.ts" };
+const SITE = { page: "src/entries/site.ts", ...WORKERS, offline: "src/entries/service_worker.ts" };
 
 /** One file that opens from a disk too, in a folder with the modules and their data. */
 async function buildSingle(folder) {
@@ -37,7 +37,7 @@ async function buildSingle(folder) {
     ...common, entryPoints: { page: entry }, outdir: folder, write: false, minify: true, format: "iife",
     loader: { ".svg": "dataurl" }, legalComments: "none",
   });
-  const [page, bench, tuner] = await Promise.all(["src/single.ts", WORKERS.worker, WORKERS.tuner].map(bundle));
+  const [page, bench, tuner] = await Promise.all(["src/entries/single.ts", WORKERS.worker, WORKERS.tuner].map(bundle));
   const text = ({ outputFiles }, kind) => outputFiles.find(({ path }) => path.endsWith(kind)).text;
   // Whatever is text stands within an element that ends at the next such tag.
   const element = (id, type, content) => `<script type="${type}" id="${id}">${content.replaceAll("</", "<\\/")}</script>\n`;
@@ -73,4 +73,4 @@ const [what, ...args] = process.argv.slice(2);
 if (what === "test") process.exitCode = await runTests(join(here, "../../build/page-tests"), args);
 else if (what === "site") await buildPage(resolve(args[0]), SITE);
 else if (what === "single") await buildSingle(resolve(args[0]));
-else await buildPage(what ?? join(here, "../src/greywhale/dashboard/page"), { page: "src/page.ts" });
+else await buildPage(what ?? join(here, "../src/greywhale/dashboard/page"), { page: "src/entries/page.ts" });

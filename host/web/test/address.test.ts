@@ -2,8 +2,8 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { test } from "node:test";
-import { fragmentOf, stateOf, type PageState } from "../src/address/state";
-import type { BenchControls } from "../src/host";
+import { fragmentOf, stateOf, type PageState } from "../src/entries/link_to_state";
+import type { BenchControls } from "../src/session/services";
 import { TABLE } from "../src/link/schema";
 
 const VIEWS = ["Arm", "Live", "Controller"];

@@ -2,10 +2,10 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { test } from "node:test";
-import { examineMotor, remarks, type Motor } from "../src/calibrate/motors";
-import { pulseSet } from "../src/calibrate/pulses";
-import { apartIn, changesOf, countsOf, requireNoSlip, solve, type Pose } from "../src/calibrate/solve";
-import { judgeSweep, type Sweep } from "../src/calibrate/sweep";
+import { examineMotor, remarks, type Motor } from "../src/views/calibrate/motors";
+import { pulseSet } from "../src/views/calibrate/pulses";
+import { apartIn, changesOf, countsOf, requireNoSlip, solve, type Pose } from "../src/views/calibrate/solve";
+import { judgeSweep, type Sweep } from "../src/views/calibrate/sweep";
 import { TABLE } from "../src/link/schema";
 
 type Solved = { sweeps: Sweep[]; first: Pose; second: Pose; raw: Record<string, number> | null; error: string };

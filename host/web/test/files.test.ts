@@ -7,8 +7,8 @@ import { test } from "node:test";
 import { controllerIn } from "../src/files/controller_file";
 import { parameterFile, statedIn } from "../src/files/parameter_file";
 import { TABLE } from "../src/link/schema";
-import { namedText } from "../src/files/named_text";
-import type { NamedText } from "../src/port";
+import { namedText } from "../src/parts/named_text";
+import type { NamedText } from "../src/parts/named_text";
 import { readImage } from "../src/sources/serial/flash/image";
 
 type Case<Raw> = { text: string; raw: Raw | null; error: string };

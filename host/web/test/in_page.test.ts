@@ -10,7 +10,7 @@ import type { BenchData } from "../src/sources/in_page/messages";
 import { Clock } from "../src/sources/in_page/clock";
 import { Store } from "../src/parts/storage";
 import { keepEeprom, keptEeprom } from "../src/sources/in_page/eeprom";
-import { Life } from "../src/sources/in_page/life";
+import { BenchLoop } from "../src/sources/in_page/bench_loop";
 import { BenchModule } from "../src/sources/in_page/module";
 
 const site = process.env["SITE"] ?? "";
@@ -19,7 +19,7 @@ const data = JSON.parse(readFileSync(join(site, "bench.json"), "utf8")) as Bench
 /** A life and what its board has said. */
 async function rig() {
   const module = await BenchModule.load(readFileSync(join(site, "bench.wasm")), data.arm);
-  const life = new Life(module, data);
+  const life = new BenchLoop(module, data);
   const decoder = new FrameDecoder();
   const samples: Sample[] = [];
   let hellos = 0;

@@ -2,8 +2,8 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { test } from "node:test";
-import { jointsOf } from "../src/controller/draft";
-import { cornerRange, infer, inputs, refusal, SET_NAMES, type Settings } from "../src/controller/law";
+import { jointsOf } from "../src/views/controller/draft";
+import { cornerRange, infer, inputs, refusal, SET_NAMES, type Settings } from "../src/session/law";
 import { Refusal, TABLE } from "../src/link/schema";
 
 type Case = { settings: Settings; period_ms: number; error: number; change: number; x: number; y: number; u: number };

@@ -2,11 +2,11 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { Sample } from "../src/link/schema";
-import { Trigger } from "../src/live/trigger";
-import { TimeWindow } from "../src/live/window";
-import { delay, ripple } from "../src/samples/measures";
-import { draw, emptyPicture } from "../src/samples/picture";
-import { COUNT, Samples, samplesIn, traceOf } from "../src/samples/samples";
+import { Trigger } from "../src/views/live/trigger";
+import { TimeWindow } from "../src/views/live/window";
+import { delay, ripple } from "../src/session/measures";
+import { draw, emptyPicture } from "../src/session/picture";
+import { COUNT, Samples, samplesIn, traceOf } from "../src/session/samples";
 
 function sample(tick: number, leader = 0, follower = 0, fault = 0): Uint8Array {
   return Sample.pack({

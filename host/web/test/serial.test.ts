@@ -1,7 +1,7 @@
 // A board at a port: what is refused before any byte is written, and a browser without ports.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import type { LinkState } from "../src/board";
+import type { LinkState } from "../src/session/board";
 import { encodeFrame } from "../src/link/frames";
 import { EnableRequest, LeadRequest, Sample, State } from "../src/link/schema";
 import { SerialBoard } from "../src/sources/serial/board";

@@ -1,13 +1,13 @@
 // What all views share of a board, over a board that answers at once.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import type { Board, BoardListener } from "../src/board";
+import type { Board, BoardListener } from "../src/session/board";
 import { encodeFrame, FrameDecoder } from "../src/link/frames";
 import {
   EnableReply, EnableRequest, HelloReply, HelloRequest, ParamGetReply, ParamGetRequest, SCHEMA_HASH, State, StatusReply, StatusRequest, StopReply, StopRequest, TABLE,
   TelemetryReply, TelemetryRequest,
 } from "../src/link/schema";
-import { Session } from "../src/session";
+import { Session } from "../src/session/session";
 
 const zeros = (size: number): Uint8Array => new Uint8Array(size);
 const settled = (): Promise<void> => new Promise((done) => setImmediate(done));

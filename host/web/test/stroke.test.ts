@@ -1,8 +1,8 @@
 // A motion that a person draws: straight between the places of the pen, and as it was drawn where it is played.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { angleAt, shareOf } from "../src/bench/limits";
-import { Stroke } from "../src/bench/stroke";
+import { angleAt, shareOf } from "../src/views/bench/limits";
+import { Stroke } from "../src/views/bench/stroke";
 
 test("a stroke is played as it was drawn, up and down, and held beyond its ends", () => {
   const stroke = new Stroke(101);

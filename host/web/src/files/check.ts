@@ -1,11 +1,8 @@
 // Checks the content of a TOML file against what it should hold; whatever is wrong is one sentence, that of the host.
 
 import { LinkError } from "../link/declared";
+import type { Path, Toml, TomlTable } from "./toml_types";
 import { advice, keyPath, quoted, short } from "./words";
-
-export type Toml = string | number | bigint | boolean | Date | readonly Toml[] | TomlTable;
-export type TomlTable = { readonly [key: string]: Toml };
-export type Path = readonly (string | number)[];
 
 type Problem = { readonly path: Path; readonly kind: "unknown" | "count" | "other"; readonly text: string };
 

@@ -1,13 +1,14 @@
 // controller.toml: four joints' sets and gains as a person writes them, checked as greywhale/files/controller.py does, in
 // raw values as a board stores them.
 
-import { cornerRange, FACTOR_NAMES, SET_NAMES, SET_UNIT, type SetName } from "../controller/law";
+import { cornerRange, FACTOR_NAMES, SET_NAMES, SET_UNIT, type SetName } from "../session/law";
 import { LinkError, type Parameter } from "../link/declared";
 import { upperFirst } from "../link/refusal";
 import { TABLE } from "../link/schema";
-import type { NamedText } from "../port";
-import { JOINTS } from "../samples/samples";
-import { anyTable, list, number, require, table, text, whole, type Shape, type Toml, type TomlTable } from "./check";
+import type { NamedText } from "../parts/named_text";
+import { JOINTS } from "../session/samples";
+import { anyTable, list, number, require, table, text, whole, type Shape } from "./check";
+import type { Toml, TomlTable } from "./toml_types";
 import { inFile, rawOf } from "./raw_value";
 import { readToml, refuseOtherKind } from "./toml";
 import { short } from "./words";

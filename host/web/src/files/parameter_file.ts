@@ -2,9 +2,10 @@
 
 import { LinkError } from "../link/declared";
 import { TABLE } from "../link/schema";
-import type { NamedText } from "../port";
-import { physicalText } from "../samples/log";
-import { isTable, type Toml, type TomlTable } from "./check";
+import type { NamedText } from "../parts/named_text";
+import { physicalText } from "../session/log";
+import { isTable } from "./check";
+import type { Toml, TomlTable } from "./toml_types";
 import { inFile, rawAsGiven } from "./raw_value";
 import { readToml, refuseOtherKind } from "./toml";
 import { advice, keyPath, quoted, short } from "./words";

@@ -2,8 +2,9 @@
 
 import { parse, TomlError } from "smol-toml";
 import { LinkError } from "../link/declared";
-import type { NamedText } from "../port";
-import { isTable, type Path, type Toml, type TomlTable } from "./check";
+import type { NamedText } from "../parts/named_text";
+import { isTable } from "./check";
+import type { Path, Toml, TomlTable } from "./toml_types";
 import { findMark } from "./toml_marks";
 import { cut, keyPath } from "./words";
 

@@ -1,6 +1,6 @@
 // Words of sentences about files, as Python words them: numbers, what is quoted, which key was meant.
 
-import type { Path, Toml } from "./check";
+import type { Path, Toml } from "./toml_types";
 
 const LONGEST = 60;
 const LONGEST_PATH = 120;

@@ -1,7 +1,6 @@
 // Builds elements. Whatever is shown is set as text, never read as HTML.
 
-import { namedText } from "../files/named_text";
-import type { NamedText } from "../port";
+import { namedText, type NamedText } from "./named_text";
 
 type Props = {
   readonly class?: string;

@@ -1,6 +1,6 @@
 // A board behind the dashboard's server: a WebSocket that carries the link's frames unchanged, and words beside them.
 
-import type { Board, BoardListener } from "../board";
+import type { Board, BoardListener } from "../session/board";
 
 const HERE_EVERY_MS = 100; // the server's patience is 500 ms
 const AGAIN_MS = 500; // until a server that went is tried again

@@ -1,7 +1,7 @@
 // What candidates cost, as `greywhale tune` prices them: greywhale/tune/search/objective.py and judge/margins.py say why.
 
-import type { Drill, TunerData } from "./data";
-import { ALL, TICK_S, type Controllers, type Following, type TunerModule } from "./module";
+import type { Controllers, Drill, TunerData } from "./data";
+import { ALL, TICK_S, type Following, type TunerModule } from "./module";
 import { TEETH, Unrests, type Unrest } from "./unrest";
 
 /** An error in rad, and what is measured beside it. */

@@ -1,7 +1,10 @@
 // What the tuner gets of greywhale (tools/site/tuner_data.py writes it), and what the page and its worker say to each other.
 
-import type { Searched, Tuned } from "../host";
-import type { Controllers } from "./module";
+import type { Searched, Tuned } from "../session/services";
+
+/** One joint's settings in raw values, in the order of the parameter table. */
+export type Row = readonly number[];
+export type Controllers = readonly Row[]; // of four joints
 
 export type Noise = { readonly seeds: readonly [number, number]; readonly gaps: readonly number[] };
 

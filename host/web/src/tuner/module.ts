@@ -1,15 +1,13 @@
 // The closed loop of many candidates as WebAssembly (host/native/web/exports.cpp), on the arm of the data.
 
 import { startCode, type Exports } from "../parts/web_assembly";
-import type { Drill, Noise, Rests, Steps, TunerData } from "./data";
-import type { Row } from "./space";
+import type { Controllers, Drill, Noise, Rests, Steps, TunerData } from "./data";
 import type { Elementary } from "./wolf_whale";
 
 const JOINTS = 4;
 export const ALL = [0, 1, 2, 3]; // of them
 export const TICK_S = 1e-3;
 const SLICES = 4; // of a tick
-export type Controllers = readonly Row[]; // of four joints
 
 /** Of a candidate on a plant, of each joint. */
 export type Following = {

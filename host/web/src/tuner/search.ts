@@ -1,9 +1,9 @@
 // The search of `greywhale tune` (greywhale/tune/default.py and search/lockstep.py): four optimisers in lockstep, in stages.
 
-import type { SearchData, Stage } from "./data";
-import { ALL, type Controllers } from "./module";
+import type { Controllers, Row, SearchData, Stage } from "./data";
+import { ALL } from "./module";
 import { Random } from "./random";
-import { rint, Space, type Row } from "./space";
+import { rint, Space } from "./space";
 import { clip, latinHypercube, WolfWhale, type Elementary } from "./wolf_whale";
 
 export type Found = {

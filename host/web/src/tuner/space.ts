@@ -1,10 +1,7 @@
 // What is searched, as points of a box, and how a point becomes settings of the board (greywhale/tune/search/space.py).
 
-import type { SearchData, Variable } from "./data";
+import type { Row, SearchData, Variable } from "./data";
 import { clip, type Bounds, type Elementary } from "./wolf_whale";
-
-/** One joint's settings in raw values, in the order of the parameter table. */
-export type Row = readonly number[];
 
 export class Space {
   readonly bounds: Bounds;

@@ -1,11 +1,11 @@
 // A tuning from its start to what a person sees of it: search, the last look, and both controllers behind the same hand.
 
-import type { Tuned } from "../host";
+import type { Tuned } from "../session/services";
 import { Costs } from "./costs";
-import type { TunerData } from "./data";
-import type { Controllers, TunerModule } from "./module";
+import type { Controllers, Row, TunerData } from "./data";
+import type { TunerModule } from "./module";
 import { Search, type Found } from "./search";
-import { rint, Space, type Row } from "./space";
+import { rint, Space } from "./space";
 import { Standard } from "./unrest";
 
 const SHOWN_TICKS = 10; // between two points of a picture

@@ -1,7 +1,7 @@
 // Whether a joint comes to rest, and still would on a slightly different arm (greywhale/tune/judge/margins.py).
 
-import type { Rests, TunerData } from "./data";
-import { TICK_S, type Controllers, type TunerModule } from "./module";
+import type { Controllers, Rests, TunerData } from "./data";
+import { TICK_S, type TunerModule } from "./module";
 
 export const TEETH = "softer gear teeth";
 const DELAY = "one period more delay";

@@ -1,12 +1,12 @@
 // A board inside the page, in a worker of its own, with the bench around it.
 
-import type { Board, BoardListener } from "../../board";
-import { SIZES, type BenchControls, type BenchWish, type Bench as BenchActions, type Range, type Size } from "../../host";
+import type { Board, BoardListener } from "../../session/board";
+import { SIZES, type BenchControls, type BenchWish, type Bench as BenchActions, type Range, type Size } from "../../session/services";
 import { encodeFrame } from "../../link/frames";
 import { StopRequest } from "../../link/schema";
 import type { Store } from "../../parts/storage";
 import { keepEeprom, keptEeprom } from "./eeprom";
-import { SPEED } from "./life";
+import { SPEED } from "./bench_loop";
 import type { BenchData, FromBench, ToBench } from "./messages";
 
 const PORT = "firmware and arm in this page, no cycle timing";

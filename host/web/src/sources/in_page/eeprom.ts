@@ -1,7 +1,7 @@
 // The board's EEPROM, kept by the browser. Content that is damaged is told and set aside.
 
 import type { Store } from "../../parts/storage";
-import { crc32 } from "../../samples/crc32";
+import { crc32 } from "../../link/crc32";
 
 const KEY = "greywhale-eeprom";
 const BYTES = 1024; // as hal/web has it

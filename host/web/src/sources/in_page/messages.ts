@@ -1,6 +1,6 @@
 // What the page and the worker with its bench say to each other, and what a bench is made of.
 
-import type { ArmDescription, BenchControls, BenchWish, Range } from "../../host";
+import type { ArmDescription, BenchControls, BenchWish, Range } from "../../session/services";
 
 /** A call of the module: its export's name, and numbers. */
 export type Call = readonly [name: string, ...given: number[]];

@@ -1,6 +1,6 @@
 // The tuner inside the page: a worker of its own for each tuning.
 
-import type { Searched, Tuned, Tuner } from "../../host";
+import type { Searched, Tuned, Tuner } from "../../session/services";
 import type { FromTuner, ToTuner, TunerData } from "../../tuner/data";
 
 export type TunerParts = { readonly code: ArrayBuffer; readonly data: TunerData; readonly worker: Worker };

@@ -2,7 +2,7 @@
 
 import { sentenceOf } from "../../parts/sentence";
 import { Clock } from "./clock";
-import { Life } from "./life";
+import { BenchLoop } from "./bench_loop";
 import type { FromBench, ToBench } from "./messages";
 import { BenchModule } from "./module";
 
@@ -15,7 +15,7 @@ const page = globalThis as unknown as {
 };
 
 class Bench {
-  private readonly life: Life;
+  private readonly loop: BenchLoop;
   private readonly clock = new Clock();
   private visible = true;
   private unread = 0;
@@ -24,8 +24,8 @@ class Bench {
 
   constructor(private readonly module: BenchModule, { data, eeprom }: Extract<ToBench, { kind: "start" }>) {
     if (eeprom) module.eeprom().set(eeprom);
-    this.life = new Life(module, data);
-    this.pass(this.life.start().slice()); // by its hello, the page learns what the board stores
+    this.loop = new BenchLoop(module, data);
+    this.pass(this.loop.start().slice()); // by its hello, the page learns what the board stores
     this.writes = module.call("eeprom_writes");
   }
 
@@ -34,7 +34,7 @@ class Bench {
       case "start":
         break;
       case "send":
-        this.guard(() => this.life.send(message.frame));
+        this.guard(() => this.loop.send(message.frame));
         break;
       case "wish":
         this.change(message);
@@ -51,7 +51,7 @@ class Bench {
   private change({ id, wish }: Extract<ToBench, { kind: "wish" }>): void {
     let error: string | null = null;
     try {
-      this.life.change(wish);
+      this.loop.change(wish);
     } catch (problem) {
       if (problem instanceof WebAssembly.RuntimeError) return this.fail(problem);
       error = sentenceOf(problem);
@@ -65,10 +65,10 @@ class Bench {
       return;
     }
     const said: Uint8Array[] = [];
-    for (let left = this.clock.due(performance.now(), this.life.speed); left; left--) said.push(this.life.tick().slice());
+    for (let left = this.clock.due(performance.now(), this.loop.speed); left; left--) said.push(this.loop.tick().slice());
     const size = said.reduce((sum, piece) => sum + piece.length, 0);
     this.keepEeprom(); // before the board can say that it has stored something
-    if (this.life.restarted()) page.postMessage({ kind: "restarted" });
+    if (this.loop.restarted()) page.postMessage({ kind: "restarted" });
     if (size) {
       const data = new Uint8Array(size);
       said.reduce((at, piece) => (data.set(piece, at), at + piece.length), 0);

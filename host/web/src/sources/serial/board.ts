@@ -1,11 +1,12 @@
 // A real board at a serial port of the browser (Web Serial).
 
-import type { Board, BoardListener } from "../../board";
+import type { Board, BoardListener } from "../../session/board";
 import { LinkError } from "../../link/declared";
 import { encodeFrame } from "../../link/frames";
 import { ResetCause, StopRequest, TelemetryRequest } from "../../link/schema";
 import { sentenceOf } from "../../parts/sentence";
-import type { BoardPort, NamedText, Report } from "../../port";
+import type { NamedText } from "../../parts/named_text";
+import type { BoardPort, Report } from "../../session/port";
 import { flash } from "./flash/flash";
 import { Lease } from "./lease";
 import { SerialLine } from "./line";

@@ -1,7 +1,8 @@
 // Flashes a board: finds its bootloader and its chip, refuses what is for another, writes, and reads all of it back.
 
 import { LinkError } from "../../../link/declared";
-import type { NamedText, Report } from "../../../port";
+import type { NamedText } from "../../../parts/named_text";
+import type { Report } from "../../../session/port";
 import { bootloaderOf, type Bootloader } from "./bootloader";
 import { checkImage, ERASED, hex, readImage, type Image } from "./image";
 import { Talk } from "./talk";

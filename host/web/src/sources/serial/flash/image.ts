@@ -1,7 +1,7 @@
 // Firmware images (Intel HEX) and what an image of greywhale says about itself: refused as greywhale/board/flash/images.py does.
 
 import { LinkError } from "../../../link/declared";
-import type { NamedText } from "../../../port";
+import type { NamedText } from "../../../parts/named_text";
 import { TARGETS, titleOf, type Target } from "./targets";
 
 /** A HEX file from address 0 to its last one; what it leaves out is erased memory. */

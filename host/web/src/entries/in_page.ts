@@ -1,0 +1,151 @@
+// The page without a host: firmware, arm and a moving hand inside it, which follows as soon as the page is open, or is in
+// the state that the address names; or a real board at a port, where the address says ?board=port. Its parts come as files
+// beside it (site.ts) or within it (single.ts).
+
+import "../page.css";
+import { fragmentOf, stateOf, type PageState } from "./link_to_state";
+import { ArmView } from "../views/arm3d/view";
+import { LeaderHand } from "../views/bench/hand";
+import { BenchView } from "../views/bench/view";
+import { CalibrateView } from "../views/calibrate/view";
+import { ConnectView } from "../views/connect/view";
+import { ControllerView } from "../views/controller/view";
+import { TryCards } from "../views/first_visit/try_cards";
+import type { BenchWish } from "../session/services";
+import { LiveView } from "../views/live/view";
+import { State } from "../link/schema";
+import { ParametersView } from "../views/parameters/view";
+import { button, el, select } from "../parts/dom";
+import { sentenceOf } from "../parts/sentence";
+import { browserStore } from "../parts/storage";
+import { startTheme } from "../parts/theme";
+import { beside } from "../views/view";
+import type { NamedText } from "../parts/named_text";
+import { Session } from "../session/session";
+import { Shell } from "../views/shell";
+import { PageBoard } from "../sources/in_page/board";
+import type { BenchData } from "../sources/in_page/messages";
+import { PageTuner, type TunerParts } from "../sources/in_page/tuner";
+import { SerialBoard } from "../sources/serial/board";
+
+/** What the page is made of. */
+export type Parts = {
+  readonly code: ArrayBuffer;
+  readonly data: BenchData;
+  readonly worker: Worker;
+  readonly tuner: () => Promise<TunerParts>; // a new worker each time
+  /** The HEX file of a board, mega or nano. */
+  readonly firmware: (board: string) => Promise<NamedText>;
+  /** The folder of the documentation, where one lies beside the page. */
+  readonly docs: string | null;
+};
+
+/** Shows the page, or why its parts are not there. */
+export function openPage(parts: Promise<Parts>): void {
+  startTheme();
+  addEventListener("hashchange", () => location.reload());
+  parts.then(atPort() ? showPort : showBench).catch((error: unknown) => {
+    document.body.append(el("main", {}, el("p", {}, `${sentenceOf(error)}; load it again.`)));
+  });
+}
+
+function atPort(): boolean {
+  return new URLSearchParams(location.search).get("board") === "port";
+}
+
+/** Which board the page shows. Another one begins anew, so that nothing of the one before is taken for its own. */
+function choice(): HTMLElement {
+  const box = select("Board", [["", "Bench in this page"], ["port", "Board at a port"]], (board) => {
+    location.href = `${location.pathname}${board && `?board=${board}`}`;
+  });
+  box.value = atPort() ? "port" : "";
+  return box;
+}
+
+function showPort({ data, worker, firmware, docs }: Parts): void {
+  worker.terminate();
+  const board = new SerialBoard((navigator as { serial?: Serial }).serial, firmware);
+  const session = new Session(board);
+  const shell = new Shell(session, [
+    new ConnectView(session, board), new LiveView(session), new ArmView(session, { arm: async () => data.description }),
+    new ControllerView(session, null), new ParametersView(session), new CalibrateView(session),
+  ], ["Plug the board in by USB and connect it in the view Port."]);
+  offerOthers(shell, docs);
+}
+
+/** Other boards, and what there is to read. */
+function offerOthers(shell: Shell, docs: string | null): void {
+  shell.offer(choice());
+  if (docs) shell.offer(el("a", { href: `${docs}index.html` }, "Documentation"));
+}
+
+async function showBench({ code, data, worker, tuner, docs }: Parts): Promise<void> {
+  const board = new PageBoard(worker, code, data, browserStore);
+  const session = new Session(board);
+  const hand = new LeaderHand(board, session);
+  const arm = new ArmView(session, { arm: async () => data.description });
+  arm.leadBy(hand);
+  const controller = new ControllerView(session, null, new PageTuner(tuner));
+  const cards = new TryCards(session, board, hand, docs, () => {
+    shell.show(controller);
+    document.getElementById("view")!.focus(); // the button is gone
+  });
+  const views = [
+    beside(arm, cards), new LiveView(session), controller, new ParametersView(session), new BenchView(session, board, hand, null),
+  ];
+  let state: PageState | null = null;
+  let problem = "";
+  try {
+    state = stateOf(location.hash.slice(1), views.map(({ name }) => name), await board.controls());
+  } catch (error) {
+    problem = sentenceOf(error);
+  }
+  if (state) controller.showJoint(state.joint);
+  const shell = new Shell(session, views, [
+    "The firmware of a real board and a simulated arm run inside this page; they need a browser with WebAssembly. A board at a port needs none: choose it in the list Board.",
+  ], views.find(({ name }) => name === state?.view));
+  const copy = button("Copy link", () => void session.attempt(async () => copyLink(session, {
+    view: shell.shown, joint: controller.shownJoint, ...board.condition(session.samples.newest("leader")), raw: await session.readParameters(),
+  })), { title: "An address that opens this page as it is now", disabled: true });
+  shell.offer(copy);
+  offerOthers(shell, docs);
+  whenDisabled(session, async () => {
+    if (problem) session.tell(problem);
+    await open(session, board, state);
+    copy.disabled = false;
+  });
+}
+
+/** The address bar has the link as well: not every browser lets a page write to the clipboard. */
+async function copyLink(session: Session, state: PageState): Promise<void> {
+  history.replaceState(null, "", `#${fragmentOf(state)}`);
+  try {
+    await navigator.clipboard.writeText(location.href);
+    session.tell("The link is copied; it opens this page as it is now.", "info");
+  } catch {
+    session.tell("The link is in the address bar; copy it from there.", "info");
+  }
+}
+
+/** Acts once, when the board has started. */
+function whenDisabled(session: Session, act: () => Promise<void>): void {
+  let begun = false;
+  session.changed.on(() => {
+    if (begun || session.status?.state !== State.is.disabled) return;
+    begun = true;
+    void act();
+  });
+}
+
+/** Opens in a state, and enables: nobody stands near a simulated arm. But who has pressed Stop meant it. */
+async function open(session: Session, board: PageBoard, state: PageState | null): Promise<void> {
+  const change = (wishes: readonly BenchWish[]): Promise<boolean> => session.attempt(async () => {
+    for (const wish of wishes) await board.change(wish);
+  });
+  if (state) {
+    await change(state.sizes);
+    await session.attempt(() => session.apply(state.raw));
+  }
+  if (!session.stopsAsked) await session.attempt(() => session.enable());
+  if (state) await change(state.acts); // with the motors on, so that what comes of them is seen
+}

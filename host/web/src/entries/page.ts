@@ -1,0 +1,48 @@
+// The page's entry: gets the server's token, opens the board, and shows the views.
+
+import "../page.css";
+import { ArmView } from "../views/arm3d/view";
+import { LeaderHand } from "../views/bench/hand";
+import { BenchView } from "../views/bench/view";
+import { ControllerView } from "../views/controller/view";
+import { Countdown } from "../views/verbs/countdown";
+import { DoView } from "../views/verbs/view";
+import type { Services } from "../session/services";
+import { LiveView } from "../views/live/view";
+import { LogsView } from "../views/logs/view";
+import { el } from "../parts/dom";
+import { startTheme } from "../parts/theme";
+import { Session } from "../session/session";
+import { Shell } from "../views/shell";
+import { findAccess, type Access } from "../sources/access";
+import { ServerBoard } from "../sources/server";
+import { HostServices } from "../sources/host_services";
+
+startTheme();
+void findAccess().then(begin);
+
+function begin({ token, sentence }: Access): void {
+  const board = new ServerBoard(token, sentence);
+  const session = new Session(board);
+  const remedy = [
+    "Plug the board in by USB: this page takes it by itself. Without a board, start ", el("code", {}, "greywhale dashboard --sim"),
+    ": it brings a simulated arm with the real firmware.",
+  ];
+  const shell = new Shell(session, [new LiveView(session)], token ? remedy : []); // without a token no board would help
+  if (token) addHost(shell, session, new HostServices(token, () => board.page));
+}
+
+/** Adds what needs a host beside the board. */
+function addHost(shell: Shell, session: Session, host: Services): void {
+  document.body.append(new Countdown(session, host.jobs).element);
+  const arm = new ArmView(session, host);
+  for (const view of [arm, new ControllerView(session, host), new DoView(session, host), new LogsView(session, host)]) {
+    shell.add(view);
+  }
+  void session.attempt(async () => {
+    if (!(await host.state()).sim) return;
+    const hand = new LeaderHand(host.bench, session);
+    arm.leadBy(hand);
+    shell.add(new BenchView(session, host.bench, hand, host));
+  });
+}

@@ -1,0 +1,71 @@
+// Writes samples as a log that every greywhale verb reads: CSV under a commented header with a check over all rows.
+
+import { Board, type HelloReply, State, TABLE } from "../link/schema";
+import type { Parameter } from "../link/declared";
+import { crc32 } from "../link/crc32";
+import { JOINTS, TICKS_A_SECOND, type Quantity, type Samples } from "./samples";
+
+const COLUMNS = ["leader", "follower", "voltage"] as const satisfies readonly Quantity[];
+const DIGITS: Readonly<Record<(typeof COLUMNS)[number], number>> = { leader: 6, follower: 6, voltage: 3 };
+
+/** What the header says of where the samples come from; `raw` is the board's parameter table, null when it is not read. */
+export type Origin = { readonly hello: HelloReply | null; readonly raw: readonly number[] | null };
+
+/** The log of the samples from `from` to before `to`. */
+export function logText(samples: Samples, from: number, to: number, origin: Origin): string {
+  const rows = Array.from({ length: to - from }, (_, i) => row(samples, from + i));
+  const body = rows.join("");
+  const facts = headerFacts(samples, from, to, origin);
+  const covered = [...facts].sort(([a], [b]) => (a < b ? -1 : 1)).map(([key, value]) => `${key}: ${value}\n`).join("");
+  const check = crc32(covered, crc32(body)).toString(16).padStart(8, "0");
+  const header = facts.map(([key, value]) => `# ${key}: ${value}\n`).join("");
+  const heading = ["time_s", ...COLUMNS.flatMap((name) => joints().map((joint) => `${name}_${joint}`)), "state"];
+  return `# greywhale log 1\n${header}# check: ${rows.length} rows, crc32 ${check}\n${heading.join(",")}\n${body}`;
+}
+
+function joints(): number[] {
+  return Array.from({ length: JOINTS }, (_, joint) => joint);
+}
+
+function row(samples: Samples, number: number): string {
+  const cells = COLUMNS.flatMap((name) =>
+    joints().map((joint) => samples.value(number, name, joint).toFixed(DIGITS[name])));
+  const time = (samples.timeOf(number) / TICKS_A_SECOND).toFixed(6);
+  return `${time},${cells.join(",")},${State.of(samples.state[number % samples.capacity]!).name}\n`;
+}
+
+function headerFacts(samples: Samples, from: number, to: number, { hello, raw }: Origin): [string, string][] {
+  const facts: [string, string][] = [];
+  if (hello) {
+    facts.push(["firmware", `${hello.fw_major}.${hello.fw_minor}.${hello.fw_patch}`]);
+    facts.push(["board", Board.of(hello.board).name]);
+  }
+  if (raw) {
+    facts.push(["parameter_crc", `0x${TABLE.crc(raw).toString(16).padStart(4, "0")}`]);
+    facts.push(["period_ms", String(raw[TABLE.named("period_ms").index])]);
+  }
+  facts.push(["every_ticks", "1"]);
+  if (raw) facts.push(...tableLines(raw));
+  const ticks = to > from ? samples.timeOf(to - 1) - samples.timeOf(from) + 1 : 0;
+  facts.push(["dropped_samples", String(ticks - (to - from))], ["recording", "complete"], ["ended_by", ""]);
+  return facts;
+}
+
+function tableLines(raw: readonly number[]): [string, string][] {
+  const groups = new Map<string, string[]>();
+  for (const parameter of TABLE.parameters) {
+    const dot = parameter.name.lastIndexOf(".");
+    const key = dot < 0 ? "parameters" : `parameters.${parameter.name.slice(0, dot)}`;
+    const line = groups.get(key) ?? [];
+    groups.set(key, line);
+    line.push(`${parameter.name.slice(dot + 1)}=${physicalText(parameter, raw[parameter.index]!)}`);
+  }
+  return [...groups].map(([key, values]) => [key, values.join(" ")]);
+}
+
+/** A value in the parameter's unit, with the digits that still tell neighbouring raw values apart. */
+export function physicalText(parameter: Parameter, raw: number): string {
+  if (parameter.lsb === 1) return String(raw);
+  const digits = Math.max(0, 1 - Math.floor(Math.log10(parameter.lsb)));
+  return String(Number((raw * parameter.lsb).toFixed(digits)));
+}

@@ -1,0 +1,144 @@
+// What views know of a host beside the board: files, predictions, verbs, a bench. Without one they hide what needs it.
+
+export type NamedFile = { readonly name: string; readonly kind: string };
+
+export type HostState = {
+  readonly greywhale: string;
+  readonly arm: string;
+  readonly folder: string;
+  readonly sim: boolean;
+  readonly files: readonly NamedFile[];
+  readonly controllers: readonly string[];
+};
+
+/** A motion and how a model follows it: rows of four joints, rad and V. */
+export type Predicted = {
+  readonly time_s: readonly number[];
+  readonly leader: readonly (readonly number[])[];
+  readonly follower: readonly (readonly number[])[];
+  readonly voltage: readonly (readonly number[])[];
+  readonly mse: readonly number[];
+};
+
+export type Prediction = { readonly step: Predicted; readonly reach: Predicted };
+
+export type ArmDescription = {
+  readonly name: string;
+  readonly urdf: string;
+  readonly joints: readonly { readonly id: string; readonly min: number; readonly max: number; readonly fixed: boolean }[];
+};
+
+export type Range = { readonly minimum: number; readonly maximum: number; readonly value: number; readonly step?: number };
+
+export const SIZES = ["supply", "load", "noise", "play", "speed"] as const;
+export type Size = (typeof SIZES)[number];
+
+/** What there is to change on a simulated bench; what a bench lacks is left out. */
+export type BenchControls = {
+  readonly leader: { readonly minimum: readonly number[]; readonly maximum: readonly number[] };
+  readonly faults: readonly { readonly name: string; readonly places: readonly string[]; readonly description: string }[];
+  /** What is broken now, as it is wished; left out by a bench that does not tell. */
+  readonly broken?: readonly string[];
+} & { readonly [size in Size]?: Range };
+
+/** One change: live angles of the leader, a motion, a fault by its name (null mends all), power, a size. */
+export type BenchWish =
+  | { readonly leader: readonly number[] }
+  | { readonly motion: string }
+  | { readonly fault: string | null }
+  | { readonly power: boolean }
+  | { readonly estop: boolean }
+  | { readonly clutch: boolean }
+  | { readonly [size in Size]?: number };
+
+export interface Bench {
+  controls(): Promise<BenchControls>;
+  change(wish: BenchWish): Promise<void>;
+}
+
+export type Argument = {
+  readonly name: string;
+  readonly kind: "flag" | "number" | "choice" | "file" | "text";
+  readonly choices: readonly string[];
+  readonly default: unknown;
+  readonly required: boolean;
+  readonly many: boolean;
+  readonly help: string;
+};
+
+export type Verb = {
+  readonly verb: string;
+  readonly help: string;
+  readonly board: boolean;
+  /** Whether it needs the port itself, with or without a board at it. */
+  readonly takes_port: boolean;
+  readonly arguments: readonly Argument[];
+};
+
+/** What a verb may answer with: JSON. */
+export type Json = null | boolean | number | string | readonly Json[] | { readonly [key: string]: Json };
+
+export type Job = {
+  readonly id: string;
+  readonly verb: string;
+  readonly state: "running" | "done" | "failed" | "stopped";
+  readonly progress: { readonly done: number; readonly total: number; readonly text: string; readonly note: string } | null;
+  /** Seconds until the arm moves; 0: it is not counted. */
+  readonly countdown: number;
+  /** The result in the terminal's words; null where there is none. */
+  readonly summary: string | null;
+  readonly result: Json;
+  readonly error: string | null;
+  readonly said: readonly string[];
+};
+
+export interface Jobs {
+  verbs(): Promise<readonly Verb[]>;
+  /** Starts a verb; the id of its job. */
+  start(verb: string, given: Readonly<Record<string, unknown>>): Promise<string>;
+  stop(id: string): Promise<void>;
+  /** Writes a line to a verb that asks. */
+  answer(id: string, line: string): Promise<void>;
+  /** Hears each job as it is, and whenever something about it changes. */
+  listen(heard: (job: Job) => void): void;
+}
+
+/** How far a search for controllers is: the best cost of each joint, now and after each batch. */
+export type Searched = {
+  readonly evaluations: number;
+  readonly budget: number;
+  readonly cost: readonly number[];
+  readonly curve: readonly (readonly [evaluations: number, cost: readonly number[]])[];
+};
+
+/** What a search found, and how the arm then follows a hand and did before: rows of four joints, rad. */
+export type Tuned = {
+  readonly after: readonly (readonly number[])[]; // four joints' settings, in the order of the table
+  /** Joints that were not steady enough as they were found: they have less voltage or integral, or what they had. */
+  readonly calmed: readonly { readonly joint: number; readonly as_before: boolean }[];
+  readonly time_s: readonly number[];
+  readonly leader: readonly (readonly number[])[];
+  readonly followers: readonly (readonly (readonly number[])[])[]; // before, after
+  readonly mse: readonly (readonly number[])[]; // before, after; of each joint
+};
+
+/** Searches controllers within the page. */
+export interface Tuner {
+  /** Tunes from four joints' settings on; one at a time. */
+  tune(before: readonly (readonly number[])[], heard: (searched: Searched) => void): Promise<Tuned>;
+  /** Ends the search with the best so far. */
+  stop(): void;
+}
+
+export interface Services {
+  readonly jobs: Jobs;
+  readonly bench: Bench;
+  state(): Promise<HostState>;
+  /** The samples of a log: payloads of the link's Sample, one after the other, ticks from the log's first row. */
+  log(file: string): Promise<Uint8Array>;
+  /** Raw values by parameter name of a built-in controller or a file. */
+  controller(file: string): Promise<Readonly<Record<string, number>>>;
+  /** What the model does with a whole parameter set in raw values. */
+  predict(raw: readonly number[], board: number): Promise<Prediction>;
+  arm(): Promise<ArmDescription>;
+}

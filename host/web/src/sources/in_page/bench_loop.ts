@@ -1,0 +1,121 @@
+// The loop of a bench inside the page, tick by tick: what the page sends, what a person wishes, the lease, the hand.
+
+import type { BenchWish, Range, Size } from "../../session/services";
+import { encodeFrame, FrameDecoder } from "../../link/frames";
+import { EnableRequest, LeadRequest, RenewRequest, StopRequest } from "../../link/schema";
+import type { BenchData } from "./messages";
+import type { BenchModule } from "./module";
+
+const LEASE_MS = 300;
+const RENEW_TICKS = 60;
+const MOST_START_TICKS = 1000;
+export const SPEED: Range = { minimum: 0.1, maximum: 10, value: 1, step: 0.1 };
+
+const RENEW = encodeFrame(RenewRequest.type, 0, RenewRequest.pack({ lease_ms: LEASE_MS }));
+
+export class BenchLoop {
+  /** Simulated seconds a second. */
+  speed = SPEED.value;
+  private ticks = 0;
+  private renewing = false; // while the page wants the motors on
+  private starts: number;
+  private reachesSince: number | null = 0; // tick; null while a person leads
+  private readonly requests = new FrameDecoder();
+
+  constructor(private readonly module: BenchModule, private readonly data: BenchData) {
+    module.call("power", 1);
+    this.starts = module.call("starts");
+  }
+
+  /** Lets the board start: until it says hello by itself, as it does where nobody has asked; what it said. */
+  start(): Uint8Array {
+    let said: Uint8Array;
+    let left = MOST_START_TICKS;
+    do said = this.tick();
+    while (!said.length && --left);
+    return said;
+  }
+
+  /** Lets a tick pass; what the board said, the callee's only until the next call. */
+  tick(): Uint8Array {
+    this.ticks++;
+    if (this.renewing && this.ticks % RENEW_TICKS === 0) this.module.send(RENEW);
+    if (this.reachesSince !== null) this.module.lead(this.reaching((this.ticks - this.reachesSince) / 1000));
+    return this.module.tick();
+  }
+
+  /** Whether the board has started anew since this was asked last; then nobody renews a lease. */
+  restarted(): boolean {
+    const starts = this.module.call("starts");
+    if (starts === this.starts) return false;
+    this.starts = starts;
+    this.renewing = false;
+    return true;
+  }
+
+  /** A frame of the page. */
+  send(frame: Uint8Array): void {
+    this.requests.feed(frame, ({ type }) => {
+      if (type === EnableRequest.type || type === LeadRequest.type) this.renewing = true;
+      if (type === StopRequest.type) this.renewing = false;
+    });
+    this.module.send(frame);
+  }
+
+  /** Does one thing to the bench, or fails with a sentence and changes nothing. */
+  change(wish: BenchWish): void {
+    if ("leader" in wish) this.leadTo(wish.leader);
+    else if ("motion" in wish) this.move(wish.motion);
+    else if ("fault" in wish) this.break(wish.fault);
+    else if ("power" in wish) this.module.call("power", Number(wish.power));
+    else if ("estop" in wish) this.module.call("estop", Number(wish.estop));
+    else if ("clutch" in wish) this.module.call("clutch", Number(wish.clutch));
+    else this.size(wish);
+  }
+
+  private leadTo(angles: readonly number[]): void {
+    this.reachesSince = null;
+    this.module.lead(angles);
+  }
+
+  private move(motion: string): void {
+    if (motion === "hold") this.leadTo(this.module.leader());
+    else if (motion === "reaches") this.reachesSince = this.ticks;
+    else throw new Error(`This bench has no motion "${motion}"; it has reaches and hold.`);
+  }
+
+  private break(fault: string | null): void {
+    if (fault === null) {
+      this.module.call("mend");
+      return;
+    }
+    const [name, place = ""] = fault.split(":");
+    const calls = this.data.faults.find((one) => one.name === name)?.places[place];
+    if (!calls) throw new Error(`"${fault}" is no mistake of this bench; choose one of its list.`);
+    for (const call of calls) this.module.call(...call);
+  }
+
+  private size({ supply, load, noise, play, speed }: { readonly [size in Size]?: number }): void {
+    if (supply !== undefined) this.module.call("change_supply", within("supply", "V", supply, this.data.supply));
+    if (load !== undefined) this.module.call("load_tip", within("load", "kg", load, this.data.load));
+    if (noise !== undefined) this.module.call("scale_noise", within("noise", "times", noise, this.data.noise));
+    if (play !== undefined) this.module.call("scale_play", within("play", "times", play, this.data.play));
+    if (speed !== undefined) this.speed = within("speed", "times", speed, SPEED);
+  }
+
+  /** Where a person's hand is who reaches here and there, and back again, for ever. */
+  private reaching(seconds: number): number[] {
+    const { hz, rows } = this.data.reaches;
+    const last = rows.length - 1;
+    const along = (seconds * hz) % (2 * last);
+    const at = along < last ? along : 2 * last - along;
+    const row = Math.min(Math.floor(at), last - 1);
+    const [from, to] = [rows[row]!, rows[row + 1]!];
+    return from.map((angle, joint) => angle + (at - row) * (to[joint]! - angle));
+  }
+}
+
+function within(what: string, unit: string, value: number, { minimum, maximum }: Range): number {
+  if (value >= minimum && value <= maximum) return value;
+  throw new Error(`The ${what} is ${value} ${unit}; choose one from ${minimum} to ${maximum}.`);
+}

@@ -1,0 +1,70 @@
+// Leads the bench's leader arm by hand: sliders, and two pads on which two joints are dragged at once.
+
+import { el, setText } from "../../parts/dom";
+import { JOINT_NAMES, type Samples } from "../../session/samples";
+import type { LeaderHand } from "./hand";
+import { angleAt, pointed, shareOf, type Limits } from "./limits";
+
+const PADS: readonly (readonly [across: number, up: number])[] = [[0, 1], [3, 2]];
+
+export class Lead {
+  readonly element = el("section", { class: "card" });
+  private readonly sliders: HTMLInputElement[] = [];
+  private readonly words: HTMLElement[] = [];
+  private readonly pads: { pad: HTMLElement; knob: HTMLElement; follower: HTMLElement }[] = [];
+
+  constructor(private readonly hand: LeaderHand, private readonly samples: Samples, private readonly limits: Limits) {
+    const rows = JOINT_NAMES.map((name, joint) => {
+      const slider = el("input", { type: "range", attrs: {
+        min: String(limits.minimum[joint]), max: String(limits.maximum[joint]), step: "0.01", "aria-label": `Leader, ${name}, rad`,
+      }, on: { input: () => hand.take(joint, Number(slider.value)) } });
+      const words = el("span", { class: "number" }, "0.00");
+      this.sliders.push(slider);
+      this.words.push(words);
+      return el("div", { class: "lead-row" }, el("span", { class: `key key-${joint}` }), el("span", {}, `${joint} ${name}`), slider, words);
+    });
+    this.element.append(el("h2", {}, "Lead by hand"), ...rows,
+      el("div", { class: "pads" }, ...PADS.map((joints) => this.pad(joints))));
+  }
+
+  private pad([across, up]: readonly [number, number]): HTMLElement {
+    const knob = el("div", { class: "knob" });
+    const follower = el("div", { class: "knob follower" });
+    const pad = el("div", { class: "pad", title: "Drag: the follower (ring) follows" }, follower, knob);
+    const drag = (event: PointerEvent): void => {
+      pointed(pad, event).forEach((share, axis) => {
+        const joint = axis ? up : across;
+        this.hand.take(joint, angleAt(this.limits, joint, share));
+      });
+    };
+    pad.addEventListener("pointerdown", (event) => {
+      pad.setPointerCapture(event.pointerId);
+      drag(event);
+    });
+    pad.addEventListener("pointermove", (event) => {
+      if (pad.hasPointerCapture(event.pointerId)) drag(event);
+    });
+    this.pads.push({ pad, knob, follower });
+    return el("figure", {}, pad, el("figcaption", { class: "quiet" }, `${JOINT_NAMES[across]} →, ${JOINT_NAMES[up]} ↑`));
+  }
+
+  draw(): void {
+    const shown = this.hand.angles;
+    const follower = this.samples.newest("follower");
+    shown.forEach((angle, joint) => {
+      const slider = this.sliders[joint]!;
+      if (document.activeElement !== slider || !this.hand.leads) slider.value = String(angle);
+      setText(this.words[joint]!, angle.toFixed(2));
+    });
+    this.pads.forEach(({ knob, follower: ring }, place) => {
+      const [across, up] = PADS[place]!;
+      this.put(knob, across, up, shown);
+      this.put(ring, across, up, follower);
+    });
+  }
+
+  private put(knob: HTMLElement, across: number, up: number, angles: readonly number[]): void {
+    knob.style.left = `${100 * shareOf(this.limits, across, angles[across]!)}%`;
+    knob.style.bottom = `${100 * shareOf(this.limits, up, angles[up]!)}%`;
+  }
+}

@@ -1,0 +1,151 @@
+// All parameters of the board: read, change, store; a controller.toml onto the board, the whole set into a file.
+
+import { controllerIn } from "../../files/controller_file";
+import { parameterFile, statedIn } from "../../files/parameter_file";
+import { rawAsGiven } from "../../files/raw_value";
+import type { Parameter } from "../../link/declared";
+import { TABLE } from "../../link/schema";
+import { button, download, el, fileField, setText, tableHead } from "../../parts/dom";
+import type { View } from "../view";
+import type { NamedText } from "../../parts/named_text";
+import { physicalText } from "../../session/log";
+import type { Session } from "../../session/session";
+
+export class ParametersView implements View {
+  readonly name = "Parameters";
+  readonly element: HTMLElement;
+  private readonly inputs: readonly HTMLInputElement[];
+  private edited: ReadonlyMap<number, number> = new Map(); // raw values by index, not yet on the board
+  private readonly said = el("p", { class: "quiet", attrs: { role: "status" } });
+  private readonly apply = button("Apply", () => this.act(() => this.run()), { class: "primary", title: "Run what is changed here; it is not stored" });
+  private readonly store = button("Store", () => this.act(() => this.keepRunning()), { title: "Write what runs to the board's memory" });
+  private readonly save = button("Save to a file", () => this.act(() => this.keep()), { title: "All parameters, as greywhale params restore takes them" });
+  private readonly discard = button("Discard", () => this.edit(new Map()), { title: "What is changed here is forgotten" });
+  private readonly changes = el("ul", { class: "differences", attrs: { tabindex: "0", "aria-label": "Changes" } });
+  private waiting = 0;
+  private last: Promise<void> = Promise.resolve();
+
+  constructor(private readonly session: Session) {
+    this.inputs = TABLE.parameters.map((parameter) => this.field(parameter));
+    const head = tableHead("parameter", "value", "unit", "from", "to");
+    const rows = TABLE.parameters.map((parameter, place) => el("tr", { title: parameter.description },
+      el("th", { attrs: { scope: "row" } }, parameter.name), el("td", {}, this.inputs[place]!), el("td", {}, parameter.unit),
+      el("td", {}, physicalText(parameter, parameter.minimum)), el("td", {}, physicalText(parameter, parameter.maximum))));
+    this.element = el("section", { class: "card" },
+      el("div", { class: "tools" }, fileField("Upload a controller.toml", ".toml", (file) => file && this.act(async () => this.upload(await file))),
+        fileField("Restore a parameter file", ".toml", (file) => file && this.act(async () => this.restore(await file)))),
+      el("div", { class: "tools" }, this.apply, this.store, this.discard, this.save),
+      this.said, this.changes,
+      el("div", { class: "scroll" }, el("table", {}, head, el("tbody", {}, ...rows))));
+    session.parametersChanged.on(() => this.show());
+    session.changed.on(() => this.refreshButtons());
+    this.refreshButtons();
+  }
+
+  enter(): void {
+    this.act(async () => void await this.session.readParameters());
+  }
+
+  private field(parameter: Parameter): HTMLInputElement {
+    const { index, name, description } = parameter;
+    const input = el("input", { type: "number", title: description, attrs: { step: "any", "aria-label": name } });
+    input.addEventListener("change", () => {
+      const next = new Map(this.edited);
+      try {
+        next.set(index, rawAsGiven(parameter, input.value === "" ? NaN : Number(input.value)));
+        if (next.get(index) === this.session.parameters?.[index]) next.delete(index);
+      } catch (error) {
+        this.session.tell((error as Error).message);
+      }
+      this.edit(next);
+    });
+    return input;
+  }
+
+  private edit(edited: ReadonlyMap<number, number>): void {
+    this.edited = edited;
+    setText(this.said, "");
+    this.show();
+  }
+
+  /** One thing after the other. */
+  private act(act: () => Promise<void>): void {
+    this.waiting++;
+    this.refreshButtons();
+    this.last = this.last.then(async () => {
+      await this.session.attempt(act);
+      this.waiting--;
+      this.refreshButtons();
+    });
+  }
+
+  private async run(): Promise<void> {
+    const raw = [...await this.session.readParameters()];
+    for (const [index, value] of this.edited) raw[index] = value;
+    await this.session.apply(raw);
+    this.edit(new Map());
+    setText(this.said, "The changes run; Store keeps them.");
+  }
+
+  private async keepRunning(): Promise<void> {
+    await this.session.store();
+    setText(this.said, "What runs is stored.");
+  }
+
+  /** Runs and stores what a controller file says; every other parameter keeps its value. */
+  private async upload(file: NamedText): Promise<void> {
+    const values = controllerIn(file);
+    const before = await this.session.readParameters();
+    const raw = TABLE.parameters.map(({ name, index }) => values.get(name) ?? before[index]!);
+    await this.session.apply(raw);
+    await this.session.store();
+    const changed = raw.filter((value, index) => value !== before[index]).length;
+    setText(this.said, `${file.name} runs and is stored; ${changed} ${changed === 1 ? "parameter has" : "parameters have"} changed.`);
+  }
+
+  /** Shows where a parameter file differs from what runs. */
+  private async restore(file: NamedText): Promise<void> {
+    const stated = statedIn(file);
+    await this.session.readParameters();
+    this.edit(stated);
+    const [count, kept] = [this.changed().length, TABLE.parameters.length - stated.size];
+    const older = kept ? ` It is older and does not state ${kept === 1 ? "one parameter, which keeps its value" : `${kept} parameters, which keep their values`}.` : "";
+    setText(this.said, (!count ? `${file.name} is what runs.`
+      : `${file.name} changes ${count === 1 ? "one parameter" : `${count} parameters`}: Apply runs it, Store then keeps it.`) + older);
+  }
+
+  private async keep(): Promise<void> {
+    download("parameters.toml", parameterFile(await this.session.readParameters()), "application/toml");
+  }
+
+  /** The parameters that Apply would change. */
+  private changed(): Parameter[] {
+    const { parameters } = this.session;
+    return TABLE.parameters.filter(({ index }) => parameters && (this.edited.get(index) ?? parameters[index]) !== parameters[index]);
+  }
+
+  private show(): void {
+    const { parameters } = this.session;
+    const changed = this.changed();
+    TABLE.parameters.forEach((parameter, place) => {
+      const input = this.inputs[place]!;
+      const raw = this.edited.get(parameter.index) ?? parameters?.[parameter.index];
+      if (document.activeElement !== input) input.value = raw === undefined ? "" : physicalText(parameter, raw);
+      input.classList.toggle("edited", changed.includes(parameter));
+    });
+    this.changes.hidden = !changed.length;
+    this.changes.replaceChildren(...changed.map((parameter) => {
+      const [before, after] = [parameters![parameter.index]!, this.edited.get(parameter.index)!].map((raw) => physicalText(parameter, raw));
+      return el("li", {}, el("span", {}, parameter.name), el("span", {}, `${before} → ${after} ${parameter.unit}`));
+    }));
+    this.refreshButtons();
+  }
+
+  private refreshButtons(): void {
+    const may = !this.waiting && this.session.link.open && this.session.driver.you;
+    this.apply.disabled = !may || !this.changed().length;
+    this.discard.disabled = this.waiting > 0 || !this.edited.size;
+    this.store.disabled = !may;
+    this.save.disabled = this.waiting > 0 || !this.session.link.open;
+  }
+}

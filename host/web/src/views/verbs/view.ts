@@ -1,0 +1,75 @@
+// Every verb of greywhale by a form, and what it does: progress, questions, results and errors as in the terminal.
+
+import { button, el } from "../../parts/dom";
+import type { View } from "../view";
+import type { Services, Job, Verb } from "../../session/services";
+import type { Session } from "../../session/session";
+import { VerbForm } from "./form";
+import { JobCard } from "./job_card";
+
+export class DoView implements View {
+  readonly name = "Do";
+  readonly withoutBoard = true;
+  readonly element: HTMLElement;
+  private readonly list = el("div", { class: "verbs", attrs: { role: "group", "aria-label": "Verbs" } });
+  private readonly reading = el("p", { class: "quiet", hidden: true, attrs: { role: "status" } }, "Reading what can be done ...");
+  private readonly form = el("div");
+  private readonly jobs = el("div", { class: "side jobs" });
+  private readonly none = el("p", { class: "quiet" }, "Nothing was started yet.");
+  private showReason = (): void => undefined; // of the verb whose form is there
+  private readonly cards = new Map<string, JobCard>();
+
+  constructor(private readonly session: Session, private readonly host: Services) {
+    this.jobs.append(this.none);
+    this.element = el("div", { class: "editor" },
+      el("section", { class: "card" }, el("h2", {}, "What shall greywhale do?"), this.reading, this.list, this.form),
+      this.jobs);
+    session.changed.on(() => this.showReason());
+    host.jobs.listen((job) => this.heard(job));
+  }
+
+  enter(): void {
+    if (this.list.childElementCount) return;
+    this.reading.hidden = false;
+    const read = this.session.attempt(async () => {
+      const verbs = await this.host.jobs.verbs();
+      this.list.replaceChildren(...verbs.map((verb) => {
+        const choice = button(verb.verb, () => {
+          for (const other of this.list.children) other.setAttribute("aria-pressed", String(other === choice));
+          void this.session.attempt(() => this.choose(verb));
+        }, { title: verb.help, attrs: { "aria-pressed": "false" } });
+        return choice;
+      }));
+    });
+    void read.then(() => { this.reading.hidden = true; });
+  }
+
+  private async choose(verb: Verb): Promise<void> {
+    const { files } = await this.host.state();
+    const form = new VerbForm(verb, files, (given) =>
+      void this.session.attempt(async () => void await this.host.jobs.start(verb.verb, given)));
+    this.form.replaceChildren(form.element);
+    this.showReason = () => form.show(this.whyNot(verb));
+    this.showReason();
+  }
+
+  /** Why a verb cannot be started from this page now, in a sentence; empty where it can. */
+  private whyNot({ board, takes_port }: Verb): string {
+    const { link, whyNotChange } = this.session;
+    if (!board) return "";
+    if (!link.open && !takes_port) return link.sentence || "No board is there yet.";
+    return whyNotChange;
+  }
+
+  private heard(job: Job): void {
+    let card = this.cards.get(job.id);
+    if (!card) {
+      card = new JobCard(job.id, job.verb, this.host.jobs, (act) => void this.session.attempt(act));
+      this.cards.set(job.id, card);
+      this.none.remove();
+      this.jobs.prepend(card.element);
+      if (job.state === "running") card.element.scrollIntoView({ block: "nearest" });
+    }
+    card.show(job);
+  }
+}
