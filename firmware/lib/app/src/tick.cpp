@@ -330,8 +330,9 @@ void Tick::learn_memory() {
 __attribute__((noinline)) bool Tick::check_memory() {
   if (checked_ || sets_.applying()) return false;
   checked_ = true;
-  const uint8_t joint = static_cast<uint8_t>(number_) % hal::joint_count;
-  supervisor_.look_at_leader(joint, leader_arm(joint), is_led_by_leader(joint), sets_.running().speed_limit);
+  const auto number = static_cast<uint16_t>(number_);
+  const auto joint = static_cast<uint8_t>(number % hal::joint_count);
+  supervisor_.look_at_leader(number, leader_arm(joint), is_led_by_leader(joint), sets_.running().speed_limit);
   follow_supervisor();
   const bool pots_are_right = !sampling_.configure_joint(sets_.running(), joint, lead_.on() || scaling_.on());
   if (pots_are_right && (check_some_bytes() || memory_.ends_well())) return true;

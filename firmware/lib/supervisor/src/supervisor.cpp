@@ -107,8 +107,9 @@ void Supervisor::look_at_joint(uint8_t joint, const JointSeen& seen, const Motio
   if (motors_on()) watch_joint(joint, seen, limits);
 }
 
-void Supervisor::look_at_leader(uint8_t joint, int16_t reading, bool leads, uint8_t speed_limit) {
-  if (jumps_.look(joint, reading, speed_limit) && leads && motors_on()) raise(Fault::leader_jump, joint);
+void Supervisor::look_at_leader(uint16_t number, int16_t reading, bool leads, uint8_t speed_limit) {
+  if (!jumps_.look(number, reading, speed_limit) || !leads || !motors_on()) return;
+  raise(Fault::leader_jump, static_cast<uint8_t>(number % joint_count));
 }
 
 void Supervisor::watch_joint(uint8_t joint, const JointSeen& seen, const MotionLimits& limits) {

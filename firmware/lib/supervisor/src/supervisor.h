@@ -67,8 +67,9 @@ class Supervisor {
   void note_rails(uint8_t low, uint8_t high);
   // Between ticks, the next joint after each. It also moves the soft start on, which a tick has no time for.
   void look_at_joint(uint8_t joint, const JointSeen& seen, const MotionLimits& limits);
-  // The same for the leader's own reading, q12 rad; whether the reference comes from there. The limit is in rad/s.
-  void look_at_leader(uint8_t joint, int16_t reading, bool leads, uint8_t speed_limit);
+  // The same for the own reading, q12 rad, of the leader whose turn is in the tick of this number; whether the
+  // reference comes from there. The limit is in rad/s.
+  void look_at_leader(uint16_t number, int16_t reading, bool leads, uint8_t speed_limit);
   // After unrest: starts the motors again, within the lease as it was. The fault stays to be seen. False when refused.
   bool restart(const Observation& seen, const Distances& distances);
 

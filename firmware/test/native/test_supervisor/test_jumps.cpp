@@ -35,10 +35,11 @@ bool always_jumps(const Course& angle, std::uint8_t most = limit, bool expected 
     Jumps jumps;
     bool jumped = false;
     double reading = angle(0);
-    int tick = 0;
+    std::uint16_t tick = 65000;
     for (double s = 0; s < 0.5; s += look_s / 4) {
       reading += (angle(s) - reading) / 2;  // the low-pass of a reading
-      if (++tick % 4 == phase) jumped |= jumps.look(2, static_cast<std::int16_t>(std::lround(4096 * reading)), most);
+      const bool turn = ++tick % 4 == phase;
+      jumped |= jumps.look(tick, turn ? static_cast<std::int16_t>(std::lround(4096 * reading)) : 0, most);
     }
     if (jumped != expected) return !expected;
   }
@@ -86,13 +87,50 @@ TEST_CASE("noise, a dirty track and a tremor have not jumped") {
 
 TEST_CASE("each joint is looked at by itself, and without a limit nothing has jumped") {
   Jumps jumps;
-  for (std::uint8_t joint = 0; joint < 4; ++joint) {
-    jumps.look(joint, static_cast<std::int16_t>(4000 * joint), limit);
-    jumps.look(joint, static_cast<std::int16_t>(4000 * joint), limit);
+  jumps.forget();
+  auto look = [&jumps, tick = std::uint16_t{0}](int reading) mutable {
+    return jumps.look(++tick, static_cast<std::int16_t>(reading), limit);
+  };
+  for (const int wait : {0, 0, 10}) {
+    for (const int joint : {1, 2, 3, 0}) CHECK_FALSE(look(4000 * joint + wait));
   }
-  for (std::uint8_t joint = 0; joint < 4; ++joint)
-    CHECK_FALSE(jumps.look(joint, static_cast<std::int16_t>(4000 * joint + 10), limit));
-  CHECK(jumps.look(1, 0, limit));
-  CHECK(jumps.look(3, 0, limit));
+  CHECK(look(0));           // joint 1
+  CHECK_FALSE(look(8010));  // joint 2
+  CHECK(look(0));           // joint 3
   CHECK(never_jumps(glide(2.0, 0), 0));
+}
+
+namespace {
+
+// Looks at a course in a tick of 1 ms each, but in those that the link leaves no time for.
+bool jumps_beside_the_link(const Course& angle, const std::function<bool(std::uint16_t)>& busy) {
+  Jumps jumps;
+  jumps.forget();
+  bool jumped = false;
+  std::uint16_t tick = 65400;  // it turns over on the way
+  for (int ms = 0; ms < 1000; ++ms) {
+    if (busy(++tick)) continue;
+    jumped |= jumps.look(tick, static_cast<std::int16_t>(std::lround(4096 * angle(ms * 0.001))), limit);
+  }
+  return jumped;
+}
+
+}  // namespace
+
+TEST_CASE("a hand has not jumped where the link took the time of a look, of many, or of every one at a joint") {
+  const Course hand = [](double s) { return 0.8 * std::sin(5 * s); };  // 4 rad/s
+  for (int turn = 0; turn < 4; ++turn) {
+    for (const int every : {4, 8, 12, 20, 100})
+      CHECK_FALSE(jumps_beside_the_link(hand, [=](std::uint16_t tick) { return tick % every == turn; }));
+    for (const int until : {65500, 65534})
+      CHECK_FALSE(jumps_beside_the_link(hand, [=](std::uint16_t tick) { return tick % 4 == turn && tick < until; }));
+    CHECK_FALSE(jumps_beside_the_link(hand, [=](std::uint16_t tick) { return tick % 4 == turn && tick < 250; }));
+  }
+}
+
+TEST_CASE("a jump is found beside the link, where that has taken the time of one look") {
+  for (int turn = 0; turn < 4; ++turn) {
+    for (const double way : {0.3, -1.0, 2.0})
+      CHECK(jumps_beside_the_link(glide(way, 0), [=](std::uint16_t tick) { return tick % 8 == turn; }));
+  }
 }
