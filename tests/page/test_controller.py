@@ -110,6 +110,7 @@ def test_what_another_host_changed_is_shown_and_what_it_left_half_done_does_not_
     expect(page.get_by_label("Kp 1/rad")).to_have_value("0.5")
     expect(page.get_by_text("The board runs these controllers.")).to_be_visible()
     page.get_by_role("button", name="Take control").click()
+    expect(page.get_by_role("button", name="Let go")).to_be_visible()  # the picture has its place
     drag(page, "Ze_a", -0.1)
     page.get_by_role("button", name="Apply").click()
     expect(page.get_by_text("The board runs these controllers.")).to_be_visible()
