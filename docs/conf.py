@@ -22,7 +22,7 @@ templates_path: list[str] = []
 
 # Headings have the anchors that they have on a forge, so that one link serves both.
 myst_heading_anchors = 4
-# page:STATE opens the page with a bench inside, which lies beside the site, in a state (host/web/src/entries/link_to_state.ts).
+# page:STATE opens the page with a bench inside, which lies beside the site, in a state (link_to_state.ts).
 myst_url_schemes = {"http": None, "https": None, "mailto": None, "page": "../index.html#{{path}}"}
 
 smartquotes = False  # --option is no dash

@@ -15,7 +15,7 @@ from tools import ROOT
 SOURCE = ROOT / "host" / "src"
 # The rooms of the package in the order in which they stand on each other: each imports only rooms before it.
 ROOMS = [
-    *("base", "protocol", "arm", "files", "fuzzy", "motion", "simulate", "board", "pictures"),
+    *("base", "protocol", "arm", "files", "fuzzy", "measure", "loop", "board", "pictures"),
     *("optimise", "identify", "tune", "commission", "adapt", "reproduce", "dashboard", "cli"),
 ]
 PAGE = ROOT / "host" / "web" / "src"
@@ -150,8 +150,8 @@ def test_what_is_not_installed_points_one_way(folder: str, forbidden: str) -> No
 @pytest.mark.parametrize(
     ("word", "owner"),
     [
-        ("_native.ClosedLoop", "greywhale/simulate/closed_loop.py"),
-        ("_native.leader_readings", "greywhale/simulate/closed_loop.py"),
+        ("_native.ClosedLoop", "greywhale/loop/closed_loop.py"),
+        ("_native.leader_readings", "greywhale/loop/closed_loop.py"),
         ("_native.simulate_ideal", "greywhale/tune/judge/floor.py"),
         ("_native.simulate_windows", "greywhale/identify/windows.py"),
         ("_native.plant_row", "greywhale/arm/plants.py"),

@@ -15,11 +15,11 @@ from greywhale.arm.parameters import USUAL_TRACK_RAD, with_usual_noise
 from greywhale.arm.plants import plant_row
 from greywhale.base.types import Floats
 from greywhale.files.arm import default_arm
-from greywhale.motion import human_reaches
+from greywhale.loop import human_reaches
+from greywhale.loop.closed_loop import ClosedLoop, known_readings
+from greywhale.loop.controllers import controllers_of
 from greywhale.protocol.firmware import ANGLE_LSB, JOINTS, TICK_S, pwm_steps
 from greywhale.protocol.table import ParameterTable
-from greywhale.simulate.closed_loop import ClosedLoop, known_readings
-from greywhale.simulate.controllers import controllers_of
 
 PIECE_S = 6  # of work, then a rest
 REST_S = 1

@@ -14,8 +14,8 @@ from greywhale.adapt.gain import Scale
 from greywhale.adapt.live_model import LiveModel
 from greywhale.adapt.propose import Proposal, Task, work_on
 from greywhale.base.types import Controllers
+from greywhale.loop.controllers import controllers_of
 from greywhale.protocol.table import CONTROLLER_COLUMNS
-from greywhale.simulate.controllers import controllers_of
 from tests.adapt.conftest import TABLE
 from tests.adapt.simulated import Work, with_gain, work_for
 from tests.support.arms import make_arm

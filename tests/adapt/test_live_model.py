@@ -12,7 +12,7 @@ from greywhale.adapt.live_model import PLANTS, LiveModel
 from greywhale.adapt.stretch import Stretch
 from greywhale.arm import ArmParameters
 from greywhale.files.arm import default_arm, load_arm
-from greywhale.simulate.controllers import controllers_of
+from greywhale.loop.controllers import controllers_of
 from tests.adapt.conftest import TABLE
 from tests.adapt.simulated import Work, with_gain
 from tests.support.arms import make_arm

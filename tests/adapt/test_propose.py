@@ -14,8 +14,8 @@ from greywhale.adapt.propose import EVERY, FASTER, NEWEST, Task, motion_of, prop
 from greywhale.base.types import Controllers
 from greywhale.files.arm import default_arm
 from greywhale.files.trajectory import Trajectory
+from greywhale.loop.controllers import controllers_of
 from greywhale.protocol.firmware import TICK_S
-from greywhale.simulate.controllers import controllers_of
 from greywhale.tune.model import Model
 from tests.adapt.conftest import TABLE
 from tests.adapt.simulated import Work, work_for

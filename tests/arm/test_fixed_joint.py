@@ -17,9 +17,8 @@ from greywhale.arm.plants import plant_row, rigid_joints
 from greywhale.base.errors import UserError
 from greywhale.files.arm import load_arm
 from greywhale.files.model import arm_toml
-from greywhale.motion import human_reaches
+from greywhale.loop import Experiment, human_reaches
 from greywhale.protocol.joints import unused
-from greywhale.simulate import Experiment
 from greywhale.tune.judge.floor import saturation_floor
 from tests.support.arms import with_joints
 

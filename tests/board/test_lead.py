@@ -12,7 +12,7 @@ from greywhale.base.errors import UserError
 from greywhale.board.device import Device
 from greywhale.board.lead import ROOM, Leading, Plan
 from greywhale.files.trajectory import Trajectory
-from greywhale.motion import human_reaches
+from greywhale.loop import human_reaches
 from greywhale.protocol import schema
 from greywhale.protocol.firmware import POINT_S, STEP_LSB
 

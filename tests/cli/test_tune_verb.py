@@ -15,8 +15,8 @@ import pytest
 from greywhale.cli import entry
 from greywhale.cli import tune as verb
 from greywhale.files import controller
+from greywhale.loop import default_controller
 from greywhale.protocol import schema
-from greywhale.simulate import default_controller
 from greywhale.tune import tune
 from tests.board.fake_board import FakeBoard
 from tests.support.tuning import judge_nothing, shorten

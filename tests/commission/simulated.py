@@ -19,21 +19,21 @@ from greywhale.arm.parameters import with_usual_noise
 from greywhale.arm.plants import plant_row
 from greywhale.base.errors import UserError
 from greywhale.base.types import show_no_progress
+from greywhale.board.hunting_stop import Hunting, HuntingStop
 from greywhale.board.stream import Received
 from greywhale.commission import CommissioningRequest, foresee, learn, run
 from greywhale.commission.arm_on_port import PlayedMotion
-from greywhale.commission.hunting_stop import Hunting, HuntingStop
 from greywhale.commission.motions import JointRange
 from greywhale.commission.search import CheckOnModel
 from greywhale.files.log import LogWriter, read_log
 from greywhale.files.log.layout import Origin
 from greywhale.files.trajectory import Trajectory
-from greywhale.motion import multi_steps
+from greywhale.loop import multi_steps
+from greywhale.loop.closed_loop import ClosedLoop, known_readings
+from greywhale.loop.controllers import controllers_of
 from greywhale.protocol import schema
 from greywhale.protocol.firmware import ANGLE_LSB, JOINTS, TICK_S, pwm_steps
 from greywhale.protocol.table import CONTROLLER_COLUMNS, ParameterTable
-from greywhale.simulate.closed_loop import ClosedLoop, known_readings
-from greywhale.simulate.controllers import controllers_of
 from greywhale.tune import TuningResult
 from greywhale.tune.model import Model
 from tests.tune.models import tuned, write_model

@@ -14,7 +14,7 @@ from greywhale.commission.motions import check_motion
 from greywhale.commission.trials import Trials
 from greywhale.files.arm import default_arm
 from greywhale.files.log import read_log
-from greywhale.simulate.controllers import controllers_of
+from greywhale.loop.controllers import controllers_of
 from tests.commission.simulated import ROOM, SimulatedRig
 from tests.commission.test_trials import BETTER, play, play_before, stiffer
 from tests.support.arms import make_arm

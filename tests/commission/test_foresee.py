@@ -10,9 +10,9 @@ import pytest
 from greywhale.commission.foresee import MOST, Foresight, foresee
 from greywhale.commission.trials import Trials
 from greywhale.files.arm import default_arm
-from greywhale.motion import multi_steps
-from greywhale.motion.swings import unrest
-from greywhale.simulate.controllers import controllers_of
+from greywhale.loop import multi_steps
+from greywhale.loop.controllers import controllers_of
+from greywhale.measure.swings import unrest
 from tests.commission.simulated import KI, KP, SimulatedRig
 
 

@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from greywhale.commission.measures import STEPS, Traces, measure, traces_of
+from greywhale.commission.measures import STEPS, measure, traces_of
 from greywhale.commission.motions import PARTS, JointRange, check_motion, first_motion
 from greywhale.files.log import Log
 from greywhale.files.log.layout import Origin
+from greywhale.loop.traces import Traces
 from greywhale.protocol.firmware import FASTEST_LED_RAD_S, POINT_S, TICK_S
 from tests.commission.simulated import ROOM
 

@@ -26,9 +26,9 @@ from greywhale.commission.arm_on_port import connected
 from greywhale.commission.motions import JointRange, check_motion, first_motion
 from greywhale.files.log import read_log
 from greywhale.files.trajectory import Trajectory
+from greywhale.loop.controllers import controllers_of
 from greywhale.protocol.schema import State
 from greywhale.protocol.table import ParameterTable
-from greywhale.simulate.controllers import controllers_of
 from greywhale_sim.lockstep import LockStepBench
 from greywhale_sim.words import lock_step
 

@@ -18,8 +18,8 @@ from greywhale.files.arm import default_arm, load_arm
 from greywhale.files.leader import load_leader
 from greywhale.files.log import Log, read_log
 from greywhale.files.model import arm_toml
+from greywhale.loop.controllers import controllers_of
 from greywhale.protocol.table import ParameterTable
-from greywhale.simulate.controllers import controllers_of
 from tests.commission.simulated import SimulatedRig, in_no_time, options_in
 from tests.support.arms import make_arm
 from tests.tune.models import write_model

@@ -17,7 +17,7 @@ from greywhale.commission.motions import PARTS, check_motion
 from greywhale.commission.search import CheckOnModel
 from greywhale.commission.trials import Trials
 from greywhale.files.arm import default_arm
-from greywhale.simulate.controllers import controllers_of
+from greywhale.loop.controllers import controllers_of
 from greywhale.tune.judge.margins import with_gain
 from greywhale.tune.model import load_model
 from tests.commission.simulated import KD, KI, KP, ROOM, SimulatedRig

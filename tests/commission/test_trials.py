@@ -12,7 +12,7 @@ from greywhale.base.errors import UserError
 from greywhale.commission.judge import BEARABLE
 from greywhale.commission.result import CommissioningResult
 from greywhale.commission.trials import Trial, Trials
-from greywhale.simulate.controllers import controllers_of
+from greywhale.loop.controllers import controllers_of
 from tests.commission.simulated import KD, KI, KP, SimulatedRig
 
 BETTER, WILD = 2.0, 40.0  # times the stiffness of before

@@ -29,7 +29,7 @@ from greywhale.files.leader import save_leader
 from greywhale.files.log import read_log
 from greywhale.files.trajectory import Trajectory
 from greywhale.identify import identify
-from greywhale.motion import human_reaches
+from greywhale.loop import human_reaches
 from greywhale.protocol.schema import HelloReply
 from greywhale.protocol.table import ParameterTable
 from greywhale.reproduce import run as reproduce_run

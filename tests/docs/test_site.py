@@ -37,7 +37,7 @@ def read(site: Path, page: str) -> str:
 
 @pytest.mark.slow
 def test_the_site_builds_without_a_warning(site: Path) -> None:
-    for page in ("index", "start", "verbs/record", "api/simulate", "link", "extending"):
+    for page in ("index", "start", "verbs/record", "api/loop", "link", "extending"):
         assert (site / f"{page}.html").is_file(), page
     assert not re.search(r"<(?:script|link|img)[^>]+(?:src|href)=.https?:", read(site, "index"))
 

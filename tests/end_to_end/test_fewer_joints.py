@@ -19,9 +19,9 @@ from greywhale.cli.entry import run
 from greywhale.files.leader import save_leader
 from greywhale.files.log import read_log
 from greywhale.files.model import arm_toml
-from greywhale.motion import human_reaches
+from greywhale.loop import human_reaches
+from greywhale.loop.closed_loop import ClosedLoop, Result
 from greywhale.protocol.schema import Board
-from greywhale.simulate.closed_loop import ClosedLoop, Result
 from greywhale.tune.model import load_model
 from tests.support.arms import with_joints
 from tests.support.tuning import judge_nothing, shorten

@@ -12,7 +12,7 @@ import pytest
 from greywhale.files import controller
 from greywhale.files.leader import save_leader
 from greywhale.files.paper_tables import paper_table
-from greywhale.motion import multi_steps
+from greywhale.loop import multi_steps
 from greywhale.protocol import schema
 from greywhale.protocol.schema import Fault, State
 

@@ -14,7 +14,7 @@ from greywhale.files.arm import load_arm
 from greywhale.files.leader import save_leader
 from greywhale.files.model import to_toml
 from greywhale.files.paper_tables import paper_table
-from greywhale.motion import human_reaches
+from greywhale.loop import human_reaches
 from greywhale.protocol.schema import Fault, State
 from greywhale.protocol.table import ParameterTable
 from greywhale.tune.travel import travel_of

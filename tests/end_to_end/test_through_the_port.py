@@ -17,7 +17,7 @@ from greywhale.board.record import record
 from greywhale.board.upload import upload_controller
 from greywhale.cli.story import BenchProcess
 from greywhale.files.log import read_log
-from greywhale.motion import evaluate
+from greywhale.measure import evaluate
 from greywhale.protocol.schema import State
 from greywhale_sim.__main__ import main
 from greywhale_sim.serve import ServeOptions, serve

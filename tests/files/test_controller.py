@@ -13,9 +13,9 @@ from hypothesis import strategies as st
 from greywhale.base.errors import UserError
 from greywhale.base.formats import toml_file
 from greywhale.files import controller
+from greywhale.loop import CONTROLLER_COLUMNS, controller_row, default_controller
 from greywhale.protocol import schema
 from greywhale.protocol.table import ParameterTable
-from greywhale.simulate import CONTROLLER_COLUMNS, controller_row, default_controller
 from tools import ROOT
 
 SETS = {

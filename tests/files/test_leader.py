@@ -10,7 +10,7 @@ import pytest
 from greywhale.base.errors import UserError
 from greywhale.files.leader import load_leader, save_leader
 from greywhale.files.trajectory import POT_RANGE_RAD
-from greywhale.motion import human_reaches, multi_steps
+from greywhale.loop import human_reaches, multi_steps
 
 HEADER = "time_s,leader_0,leader_1,leader_2,leader_3\n"
 

@@ -13,7 +13,7 @@ from greywhale.files.leader import load_leader, save_leader
 from greywhale.files.log import LogWriter, read_log
 from greywhale.files.log.check import Check
 from greywhale.files.log.layout import Origin
-from greywhale.motion import human_reaches
+from greywhale.loop import human_reaches
 
 ROWS = 60
 

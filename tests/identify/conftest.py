@@ -17,7 +17,7 @@ from greywhale.files.arm import load_arm
 from greywhale.files.log import Log
 from greywhale.files.trajectory import Trajectory
 from greywhale.identify import IdentificationResult, bootstrap, identify
-from greywhale.motion import human_reaches
+from greywhale.loop import human_reaches
 from greywhale.protocol.table import ParameterTable
 from tools.support.recordings import Recorded, random_arm, record, record_three, table_of
 

@@ -10,8 +10,7 @@ import pytest
 from greywhale.arm.from_plant import arm_of
 from greywhale.files.arm import default_arm, load_arm
 from greywhale.identify.data import pot_noise, prepare
-from greywhale.motion import human_reaches
-from greywhale.simulate import plant_row
+from greywhale.loop import human_reaches, plant_row
 from tools.support.recordings import random_arm, record, table_of
 
 

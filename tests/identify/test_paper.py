@@ -12,8 +12,8 @@ from greywhale.identify import pack_search, paper
 from greywhale.identify.closed_loop import Loop
 from greywhale.identify.data import prepare
 from greywhale.identify.run import identify
+from greywhale.loop import plant_row
 from greywhale.protocol.table import ParameterTable
-from greywhale.simulate import plant_row
 from tools.support.recordings import Recorded
 
 

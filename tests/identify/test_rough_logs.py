@@ -15,7 +15,7 @@ from greywhale.files.arm import load_arm
 from greywhale.identify import IdentificationResult, identify
 from greywhale.identify.checks import check
 from greywhale.identify.data import LONGEST_GAP_S, prepare, windows_of
-from greywhale.motion import human_reaches, multi_steps
+from greywhale.loop import human_reaches, multi_steps
 from greywhale.protocol.table import ParameterTable
 from tests.identify.conftest import alone, rows, without
 from tests.support.interrupts import ctrl_c_at

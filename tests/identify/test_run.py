@@ -15,9 +15,8 @@ from greywhale.files.log.condition import Condition
 from greywhale.identify import IdentificationResult, identify, validated
 from greywhale.identify.judge import CHANGED, FIT, SECOND, LogVerdict, judge, undecided_of, warnings_of
 from greywhale.identify.uncertainty import LARGEST_CONDITION
-from greywhale.motion import human_reaches
+from greywhale.loop import human_reaches, plant_row
 from greywhale.protocol.table import ParameterTable
-from greywhale.simulate import plant_row
 from greywhale.tune.model import load_model
 from tests.identify.conftest import alone, first, rows
 from tests.support.interrupts import ctrl_c_at

@@ -14,7 +14,7 @@ from greywhale.files.arm import load_arm
 from greywhale.identify import IdentificationResult, loosen_gears, sampled_plants
 from greywhale.identify.found_model import Rival
 from greywhale.identify.space import Space
-from greywhale.simulate import plant_row
+from greywhale.loop import plant_row
 
 
 @pytest.fixture(scope="module")

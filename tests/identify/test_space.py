@@ -10,8 +10,8 @@ from greywhale.arm.plants import column, columns
 from greywhale.files.arm import default_arm, load_arm
 from greywhale.files.model import to_toml
 from greywhale.identify.space import KINDS, MOTOR, WHOLE_ARM, Space
+from greywhale.loop import plant_row
 from greywhale.protocol.firmware import JOINTS
-from greywhale.simulate import plant_row
 
 ALL = tuple(KINDS)
 BODY = set(range(column("torque_per_volt", 0)))  # what depends on the links alone

@@ -15,7 +15,7 @@ from greywhale.identify.data import LIVELY_RAD, first_rows, prepare, some_window
 from greywhale.identify.space import MOTOR, Space
 from greywhale.identify.steps import WindowFit
 from greywhale.identify.windows import WindowResidual, take_off_starts
-from greywhale.simulate import plant_row
+from greywhale.loop import plant_row
 from tools.support.recordings import Recorded
 
 H = 0.25e-3

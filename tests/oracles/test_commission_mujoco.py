@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from greywhale.commission.judge import KEPT_SHARE, MOST_UNREST
-from greywhale.motion import human_reaches, multi_steps
+from greywhale.loop import human_reaches, multi_steps
 from tools.support.foreign_arm import Commissioned, bench_of, commissioned, foreign_arm
 
 SEED = 2

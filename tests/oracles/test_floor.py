@@ -11,8 +11,7 @@ from greywhale import _native
 from greywhale.arm.plants import column
 from greywhale.base.types import Floats
 from greywhale.files.arm import default_arm, load_arm
-from greywhale.motion import steps
-from greywhale.simulate import PLANT_COLUMNS, leader_slices, plant_row
+from greywhale.loop import PLANT_COLUMNS, leader_slices, plant_row, steps
 from greywhale.tune.judge.floor import saturation_floor
 
 SLICE_S = 250e-6

@@ -14,7 +14,7 @@ from mujoco_recording import record
 from greywhale.arm import ArmParameters
 from greywhale.files.arm import load_arm
 from greywhale.identify import IdentificationResult, identify
-from greywhale.motion import human_reaches
+from greywhale.loop import human_reaches
 from tools.support.recordings import random_arm, table_of
 
 SECONDS = 15.0

@@ -19,15 +19,14 @@ from greywhale import _native
 from greywhale.arm import ArmParameters
 from greywhale.arm.plants import column, columns
 from greywhale.files.arm import default_arm, load_arm
-from greywhale.motion import human_reaches
+from greywhale.loop import CONTROLLER_COLUMNS, PLANT_COLUMNS, Experiment, Timing, human_reaches, plant_row
+from greywhale.loop.leader import leader_slices
 from greywhale.protocol.schema import Board
 from greywhale.protocol.table import ParameterTable
-from greywhale.simulate import CONTROLLER_COLUMNS, PLANT_COLUMNS, Experiment, Timing, plant_row
-from greywhale.simulate.leader import leader_slices
 from tests.identify.test_windows import arguments as windows_of_test
+from tests.loop.test_batch import search_box
+from tests.loop.test_law_in_lanes import random_angles, random_controllers
 from tests.oracles.native_calls import Calls, read, written
-from tests.simulate.test_batch import search_box
-from tests.simulate.test_law_in_lanes import random_angles, random_controllers
 from tools.setup import page
 
 HERE = Path(__file__).parent

@@ -10,7 +10,7 @@ from playwright.sync_api import BrowserContext, Page, expect
 
 from greywhale.files.log import LogWriter, read_log
 from greywhale.files.log.layout import Origin
-from greywhale.motion import evaluate
+from greywhale.measure import evaluate
 from tests.page import stage as stages
 from tests.page.stage import Stage
 

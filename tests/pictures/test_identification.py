@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from greywhale.motion import multi_steps
+from greywhale.loop import multi_steps
 from greywhale.pictures import identification as pictures
 from greywhale.pictures import looks
 from greywhale.pictures.identification import Trace

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from greywhale.motion import multi_steps
+from greywhale.loop import multi_steps
 from greywhale.pictures import looks
 from greywhale.pictures import paper_curves as curves
 from greywhale.pictures import paper_diagrams as diagrams

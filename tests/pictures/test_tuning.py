@@ -12,11 +12,10 @@ from matplotlib.lines import Line2D
 from greywhale.base.types import Controllers, Floats
 from greywhale.files.controller import load
 from greywhale.files.paper_tables import paper_table
-from greywhale.motion import multi_steps
+from greywhale.loop import controller_row, multi_steps
 from greywhale.pictures import tuning as pictures
 from greywhale.pictures.page import style
 from greywhale.pictures.tuning import Response
-from greywhale.simulate import controller_row
 from tests.pictures.sight import faults
 
 

@@ -14,7 +14,7 @@ import pytest
 from greywhale.files.arm import load_arm
 from greywhale.files.log import Log
 from greywhale.files.trajectory import Trajectory
-from greywhale.motion import multi_steps, steps
+from greywhale.loop import multi_steps, steps
 from greywhale.pictures import page
 from greywhale.pictures import paper_curves as curves
 from greywhale.pictures import paper_diagrams as diagrams

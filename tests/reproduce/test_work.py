@@ -13,7 +13,7 @@ from greywhale.arm.plants import plant_row
 from greywhale.files.arm import load_arm
 from greywhale.fuzzy.exact import Feet, infer
 from greywhale.fuzzy.settings import JointSettings
-from greywhale.motion import human_reaches, steps
+from greywhale.loop import human_reaches, steps
 from greywhale.reproduce.pages.numbers import lower
 from greywhale.reproduce.work import arms, bench, errata, findings, grey_box, motions, readings
 from greywhale.reproduce.work.errata import Law

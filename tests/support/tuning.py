@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from greywhale.identify import bootstrap, sampled_plants
-from greywhale.motion import human_reaches
+from greywhale.loop import human_reaches
 from greywhale.tune import default, model
 from greywhale.tune.judge import held_out
 from greywhale.tune.judge.margins import REST_S, Margins

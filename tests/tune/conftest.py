@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from greywhale.files.trajectory import Trajectory
-from greywhale.simulate import default_controller
+from greywhale.loop import default_controller
 from greywhale.tune.judge.floor import Floor
 from greywhale.tune.judge.held_out import HeldOut
 from greywhale.tune.judge.margins import Margin

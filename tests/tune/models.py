@@ -14,8 +14,8 @@ from greywhale.base.types import Controllers
 from greywhale.files.arm import default_arm
 from greywhale.files.model import sealed, to_toml
 from greywhale.identify.space import KINDS, Space
-from greywhale.motion import Evaluation
-from greywhale.motion.evaluate import JointMeasures
+from greywhale.measure import Evaluation
+from greywhale.measure.evaluate import JointMeasures
 from greywhale.protocol.firmware import JOINTS
 from greywhale.tune import TuningResult
 from greywhale.tune.model import Model

@@ -16,8 +16,8 @@ from greywhale.files import parameter_file
 from greywhale.files.arm import default_arm, load_arm
 from greywhale.files.model import to_toml
 from greywhale.identify import loosen_gears, sampled_plants
+from greywhale.loop import default_controller, plant_row
 from greywhale.protocol.table import ParameterTable
-from greywhale.simulate import default_controller, plant_row
 from greywhale.tune.model import LOOSER, load_model
 from tests.tune.models import SEARCHED, facts_of, log_facts, write_model
 

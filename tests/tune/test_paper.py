@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from greywhale.arm.plants import column
-from greywhale.motion import multi_steps, steps
-from greywhale.simulate import Experiment, default_controller
+from greywhale.loop import Experiment, default_controller, multi_steps, steps
 from greywhale.tune import TuningResult, tune
 from greywhale.tune.model import Model, load_model
 from greywhale.tune.paper import AGENTS, BUDGET, ITERATIONS, Loops, move_one_joint

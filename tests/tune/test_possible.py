@@ -7,8 +7,8 @@ import pytest
 
 from greywhale.arm.plants import columns
 from greywhale.files.arm import default_arm
+from greywhale.loop import default_controller, plant_row
 from greywhale.protocol.table import ParameterTable
-from greywhale.simulate import default_controller, plant_row
 from greywhale.tune.possible import LEAST_RAD, LEAST_SHARE, lateness_s, scale_of
 from greywhale.tune.search.objective import ErrorScale, follow
 from greywhale.tune.search.training import TrainingMotion, training_motions

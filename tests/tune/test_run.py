@@ -14,8 +14,8 @@ import pytest
 from greywhale.arm.parameters import USUAL_NOISE_V, with_usual_noise
 from greywhale.base.errors import UserError
 from greywhale.base.types import show_no_progress
+from greywhale.loop import plant_row
 from greywhale.optimise import METHODS as OPTIMISERS
-from greywhale.simulate import plant_row
 from greywhale.tune import METHODS, TuningResult, check_request, default, tune
 from greywhale.tune.default import CALMER, KU, DefaultMethod
 from greywhale.tune.judge.margins import TEETH

@@ -17,7 +17,7 @@ from greywhale.board.device import stop_message
 from greywhale.files import controller
 from greywhale.files.arm import default_arm
 from greywhale.files.paper_tables import paper_table
-from greywhale.motion import human_reaches
+from greywhale.loop import human_reaches
 from greywhale.protocol import frames, schema
 from greywhale.protocol.table import ParameterTable
 from greywhale.tune.travel import travel_of

@@ -31,10 +31,9 @@ from greywhale.cli.story.learn import learn
 from greywhale.cli.story.practice import practise, tables
 from greywhale.files.arm import default_arm, load_arm
 from greywhale.files.trajectory import Trajectory
-from greywhale.motion import human_reaches
+from greywhale.loop import Experiment, human_reaches
+from greywhale.loop.controllers import controllers_of
 from greywhale.protocol.table import ParameterTable
-from greywhale.simulate import Experiment
-from greywhale.simulate.controllers import controllers_of
 from greywhale.tune import tune
 from greywhale.tune.model import load_model
 from greywhale_sim.assemble import BenchOptions

@@ -20,7 +20,8 @@ from greywhale.cli.entry import run as verb
 from greywhale.cli.story import RunningBench, record_motion
 from greywhale.files.arm import default_arm
 from greywhale.files.leader import save_leader
-from greywhale.motion import evaluate, human_reaches
+from greywhale.loop import human_reaches
+from greywhale.measure import evaluate
 from greywhale_sim.faults import BY_NAME, FAULTS, WHERE
 from tools.benchmarks.figure import Figure, at_most
 from tools.benchmarks.study import repeat

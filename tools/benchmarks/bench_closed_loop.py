@@ -22,8 +22,7 @@ import numpy as np
 from greywhale.arm.export import mjcf
 from greywhale.arm.plants import columns
 from greywhale.files.arm import default_arm
-from greywhale.motion import human_reaches
-from greywhale.simulate import Experiment, default_controller, plant_row
+from greywhale.loop import Experiment, default_controller, human_reaches, plant_row
 from tools import ROOT
 from tools.benchmarks.figure import Figure, at_least
 

@@ -20,15 +20,15 @@ from greywhale.base.study import Task
 from greywhale.base.types import Controllers
 from greywhale.cli.story.practice import POSE
 from greywhale.commission.judge import Limits, judge
-from greywhale.commission.measures import Measures, Traces, measure
+from greywhale.commission.measures import Measures, measure
 from greywhale.commission.motions import Check, JointRange, check_motion
 from greywhale.files.model import arm_toml
 from greywhale.fuzzy.settings import GAIN_UNIT
-from greywhale.motion import human_reaches
-from greywhale.motion.generate import RANGE_RAD
+from greywhale.loop import Experiment, default_controller, human_reaches
+from greywhale.loop.leader_motions import RANGE_RAD
+from greywhale.loop.traces import Traces
 from greywhale.protocol.firmware import JOINTS, pwm_steps
 from greywhale.protocol.table import CONTROLLER_COLUMNS, ParameterTable
-from greywhale.simulate import Experiment, default_controller
 from greywhale.tune import tune
 from greywhale.tune.model import load_model
 from greywhale.tune.search.space import largest_ki

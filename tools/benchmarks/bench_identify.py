@@ -15,8 +15,8 @@ from greywhale.base.study import Task
 from greywhale.files.arm import default_arm, load_arm
 from greywhale.identify import IdentificationResult, identify
 from greywhale.identify.closed_loop import Loop
+from greywhale.loop import plant_row
 from greywhale.protocol.table import ParameterTable
-from greywhale.simulate import plant_row
 from tools.benchmarks.figure import Figure, at_least, at_most
 from tools.benchmarks.study import repeat
 from tools.support.recordings import Recorded, random_arm, record_three, table_of

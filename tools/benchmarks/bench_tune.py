@@ -16,9 +16,9 @@ from greywhale.files.arm import default_arm, load_arm
 from greywhale.files.leader import save_leader
 from greywhale.files.paper_tables import paper_table
 from greywhale.files.trajectory import Trajectory
-from greywhale.motion import Evaluation, evaluate
+from greywhale.loop import plant_row
+from greywhale.measure import Evaluation, evaluate
 from greywhale.protocol.table import ParameterTable
-from greywhale.simulate import plant_row
 from greywhale.tune.judge.margins import MOVING, Margin, Margins
 from tools import ROOT
 from tools.benchmarks.figure import Figure, at_most

@@ -16,7 +16,8 @@ from greywhale.files.arm import load_arm
 from greywhale.files.log import Log
 from greywhale.files.trajectory import Trajectory
 from greywhale.identify.excite import design
-from greywhale.motion import Evaluation, human_reaches, multi_steps, steps
+from greywhale.loop import human_reaches, multi_steps, steps
+from greywhale.measure import Evaluation
 from greywhale.protocol.table import ParameterTable
 from greywhale.tune.judge.floor import saturation_floor
 from tools.benchmarks.figure import Figure, at_most

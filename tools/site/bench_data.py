@@ -15,7 +15,7 @@ from greywhale.arm import ArmParameters
 from greywhale.arm.parameters import PotentiometerBank
 from greywhale.base.types import Floats
 from greywhale.dashboard.answers import arm_facts
-from greywhale.motion import human_reaches
+from greywhale.loop import human_reaches
 from greywhale.protocol.firmware import JOINTS
 from greywhale_sim import commands, faults
 

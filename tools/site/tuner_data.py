@@ -14,14 +14,14 @@ import numpy as np
 from greywhale.base.types import Floats
 from greywhale.files.trajectory import Trajectory
 from greywhale.fuzzy.settings import LEAST_WIDTH, SET_UNIT
-from greywhale.motion import swings
-from greywhale.motion.runs import stretches
+from greywhale.loop.closed_loop import Timing, settings_numbers, with_right_motors
+from greywhale.loop.leader import SLICE_S
+from greywhale.measure import swings
+from greywhale.measure.runs import stretches
 from greywhale.optimise import relative
 from greywhale.optimise.optimiser import PACK
 from greywhale.protocol.firmware import JOINTS, pwm_steps
 from greywhale.protocol.table import CONTROLLER_COLUMNS
-from greywhale.simulate.closed_loop import Timing, settings_numbers, with_right_motors
-from greywhale.simulate.leader import SLICE_S
 from greywhale.tune import default, possible
 from greywhale.tune.judge import margins, standard
 from greywhale.tune.model import Model, load_model

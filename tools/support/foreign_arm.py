@@ -26,8 +26,8 @@ from greywhale.files.arm import load_arm
 from greywhale.files.leader import save_leader
 from greywhale.files.model import arm_toml
 from greywhale.files.trajectory import Trajectory
-from greywhale.motion import evaluate
-from greywhale.motion.swings import ripple_at_rest, unrest
+from greywhale.measure import evaluate
+from greywhale.measure.swings import ripple_at_rest, unrest
 from greywhale.protocol.firmware import JOINTS, TICK_S
 from greywhale_sim.assemble import BenchOptions, build_bench
 from greywhale_sim.lockstep import LockStepBench

@@ -21,10 +21,9 @@ from greywhale.files.arm import load_arm
 from greywhale.files.log import Log, LogWriter, read_log
 from greywhale.files.log.layout import Origin
 from greywhale.files.trajectory import Trajectory
-from greywhale.motion import human_reaches
+from greywhale.loop import Experiment, human_reaches
 from greywhale.protocol.firmware import ANGLE_LSB, JOINTS, pwm_steps
 from greywhale.protocol.table import ParameterTable
-from greywhale.simulate import Experiment
 from tools import ROOT
 
 TABLES = ROOT / "shared" / "fuzzy_tables"

@@ -1,4 +1,4 @@
-// The power of recorded angles in a band (closed_loop/band_power.h). greywhale.simulate.band designs the filter; use
+// The power of recorded angles in a band (closed_loop/band_power.h). greywhale.loop.band designs the filter; use
 // that, not this.
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>

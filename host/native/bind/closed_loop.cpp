@@ -1,4 +1,4 @@
-// Binds the closed loop; greywhale.simulate checks the arguments and explains them. Use that, not this.
+// Binds the closed loop; greywhale.loop checks the arguments and explains them. Use that, not this.
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/array.h>
@@ -87,7 +87,7 @@ loop::Calibration calibration_of(const Each<int>& zero, const Each<int>& scale) 
   return c;
 }
 
-// As greywhale.simulate passes it on; checked there.
+// As greywhale.loop passes it on; checked there.
 void make_settings(loop::Settings* self, int period_ms, int supply_mv, int soft_start_ms, int filter_shift,
                    const Each<int>& limit_min, const Each<int>& limit_max, const Each<int>& motor_sign,
                    const Each<int>& pwm_top, const Each<int>& leader_zero, const Each<int>& leader_scale,

@@ -23,7 +23,7 @@ namespace {
 
 using loop::kJoints;
 
-constexpr int kStepsPerTick = 2, kStepsPerSlice = 1;  // as greywhale.simulate has them
+constexpr int kStepsPerTick = 2, kStepsPerSlice = 1;  // as greywhale.loop has them
 
 std::vector<double> given, found;
 

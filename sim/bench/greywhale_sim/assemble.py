@@ -13,7 +13,7 @@ from greywhale.base.errors import BAD_USAGE, UserError
 from greywhale.board.flash import packaged_image
 from greywhale.files.arm import load_arm
 from greywhale.files.leader import load_leader
-from greywhale.motion import human_reaches
+from greywhale.loop import human_reaches
 from greywhale_sim import eeprom_file
 from greywhale_sim.bench import SLICE_S, Bench, Plant
 from greywhale_sim.drivers import CHIPS, Chip

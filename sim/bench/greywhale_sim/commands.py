@@ -12,7 +12,7 @@ import numpy as np
 from greywhale import arm
 from greywhale.base.errors import UserError
 from greywhale.files.leader import load_leader
-from greywhale.motion import human_reaches
+from greywhale.loop import human_reaches
 from greywhale_sim import faults, hands
 from greywhale_sim.bench import CLOCK_HZ, stops_of
 from greywhale_sim.faults import POTS

@@ -9,7 +9,7 @@ from greywhale.base.errors import BAD_USAGE, UserError
 from greywhale.files.arm import load_arm
 from greywhale.identify.excite import Problem, design
 from greywhale.identify.excite.limits import MARGIN_RAD
-from greywhale.motion import human_reaches
+from greywhale.loop import human_reaches
 from greywhale.protocol.table import ParameterTable
 from tools.support.recordings import random_arm
 

@@ -17,7 +17,7 @@ from greywhale.identify.excite.multisine import Shape
 from greywhale.identify.excite.trial import ROW_S, try_motion
 from greywhale.identify.space import MOTOR, Space
 from greywhale.identify.windows import WindowResidual
-from greywhale.motion import human_reaches
+from greywhale.loop import human_reaches
 from greywhale.protocol.firmware import POINT_S
 from greywhale.protocol.table import ParameterTable
 from tools.support.recordings import record

@@ -10,8 +10,8 @@ from greywhale.arm.plants import columns
 from greywhale.base.errors import BAD_USAGE, UserError
 from greywhale.files.arm import load_arm
 from greywhale.identify.excite.limits import MARGIN_RAD, REACH_RAD, family, limits_of, parse_range
+from greywhale.loop import plant_row
 from greywhale.protocol.table import ParameterTable
-from greywhale.simulate import plant_row
 
 POSE = np.array([0.0, 0.45, -0.1, 0.0])
 

@@ -19,7 +19,7 @@ from greywhale.files.leader import load_leader
 from greywhale.files.log import read_log
 from greywhale.files.model import to_toml
 from greywhale.identify import identify
-from greywhale.motion import human_reaches
+from greywhale.loop import human_reaches
 from greywhale.protocol.firmware import JOINTS, STEP_LSB
 from greywhale.protocol.schema import State
 from greywhale_sim.words import lock_step

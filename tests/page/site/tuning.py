@@ -9,8 +9,8 @@ import pytest
 
 from greywhale.base.types import Controllers, Floats
 from greywhale.files.trajectory import Trajectory
+from greywhale.loop import experiment
 from greywhale.protocol.table import CONTROLLER_COLUMNS
-from greywhale.simulate import experiment
 from greywhale.tune import default
 from greywhale.tune.model import load_model
 from greywhale.tune.request import TuningRequest

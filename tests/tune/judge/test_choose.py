@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from greywhale.simulate import default_controller
+from greywhale.loop import default_controller
 from greywhale.tune.judge.choose import choose, next_best
 
 BEFORE = default_controller()

@@ -12,8 +12,7 @@ from greywhale.arm.plants import column
 from greywhale.base.errors import UserError
 from greywhale.base.types import Floats
 from greywhale.files.arm import default_arm, load_arm
-from greywhale.motion import human_reaches, multi_steps, steps
-from greywhale.simulate import PLANT_COLUMNS, Experiment, leader_slices, plant_row
+from greywhale.loop import PLANT_COLUMNS, Experiment, human_reaches, leader_slices, multi_steps, plant_row, steps
 from greywhale.tune.judge.floor import saturation_floor
 
 TORQUE, INERTIA, SUPPLY = 0.5, 0.05, 10.0

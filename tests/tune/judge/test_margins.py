@@ -9,9 +9,9 @@ from greywhale import _native
 from greywhale.arm.plants import columns
 from greywhale.files import controller
 from greywhale.files.arm import default_arm
-from greywhale.motion.swings import RATTLE_MOVING_RAD
+from greywhale.loop import controller_row, default_controller, plant_row
+from greywhale.measure.swings import RATTLE_MOVING_RAD
 from greywhale.protocol.table import ParameterTable
-from greywhale.simulate import controller_row, default_controller, plant_row
 from greywhale.tune.judge.margins import (
     DELAY,
     MOVING,

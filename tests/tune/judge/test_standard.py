@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from greywhale.files.arm import default_arm
+from greywhale.loop import default_controller, plant_row
 from greywhale.protocol.table import ParameterTable
-from greywhale.simulate import default_controller, plant_row
 from greywhale.tune.judge.margins import AT_REST, DELAY, MOVING, TEETH, Margin, Margins
 from greywhale.tune.judge.standard import Standard
 

@@ -11,8 +11,8 @@ import pytest
 from greywhale.base.types import Controllers
 from greywhale.files.controller import load
 from greywhale.files.paper_tables import paper_table
-from greywhale.motion import Evaluation, JointMeasures
-from greywhale.simulate import controller_row
+from greywhale.loop import controller_row
+from greywhale.measure import Evaluation, JointMeasures
 from greywhale.tune.report import tables
 from greywhale.tune.report.tables import Table
 from greywhale.tune.result import TuningResult

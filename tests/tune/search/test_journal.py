@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from greywhale.base.errors import UserError
-from greywhale.simulate import default_controller
+from greywhale.loop import default_controller
 from greywhale.tune.search.journal import TuningJournal
 
 ROWS = np.repeat(default_controller()[None], 2, axis=0)

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+from greywhale.loop import default_controller
 from greywhale.optimise import Optimiser, create
-from greywhale.simulate import default_controller
 from greywhale.tune.search import lockstep as search
 from greywhale.tune.search.lockstep import KEPT, TOGETHER, TURNS, LockstepSearch, SearchState
 from greywhale.tune.search.space import CE_TICKS, Space

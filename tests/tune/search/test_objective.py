@@ -11,10 +11,9 @@ from greywhale.arm.plants import column
 from greywhale.base.errors import UserError
 from greywhale.files.arm import default_arm
 from greywhale.files.trajectory import Trajectory
-from greywhale.motion import human_reaches
-from greywhale.motion.swings import RATTLE_MOVING_RAD
+from greywhale.loop import default_controller, human_reaches, plant_row
+from greywhale.measure.swings import RATTLE_MOVING_RAD
 from greywhale.protocol.table import ParameterTable
-from greywhale.simulate import default_controller, plant_row
 from greywhale.tune.possible import scale_of
 from greywhale.tune.search.objective import (
     BEARABLE,

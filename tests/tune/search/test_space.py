@@ -9,8 +9,8 @@ import pytest
 
 from greywhale.base.errors import UserError
 from greywhale.fuzzy.settings import LEAST_WIDTH, SET_UNIT, JointSettings
+from greywhale.loop import CONTROLLER_COLUMNS, default_controller
 from greywhale.protocol.schema import Refusal
-from greywhale.simulate import CONTROLLER_COLUMNS, default_controller
 from greywhale.tune.search.space import CE_TICKS, GAINS, STRATEGIES, Space, check_bounds
 
 BEFORE = default_controller()

@@ -7,7 +7,7 @@ import numpy as np
 from greywhale.arm.plants import plant_row
 from greywhale.files.arm import default_arm
 from greywhale.files.trajectory import Trajectory
-from greywhale.motion import human_reaches
+from greywhale.loop import human_reaches
 from greywhale.protocol.table import ParameterTable
 from greywhale.tune.search.training import WAIT_S, own_motion, reach
 

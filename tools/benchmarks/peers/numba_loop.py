@@ -30,7 +30,7 @@ def fuzzy(x: float, y: float) -> float:
 
 @numba.njit(fastmath=True)  # type: ignore[untyped-decorator,unused-ignore]
 def loop(p: Floats, gains: Floats, leader: Floats) -> float:
-    """One candidate: a row of greywhale.simulate.PLANT_COLUMNS, (4, 4) gains kp kd ki ku, leader (ticks, 4)."""
+    """One candidate: a row of greywhale.loop.PLANT_COLUMNS, (4, 4) gains kp kd ki ku, leader (ticks, 4)."""
     q, v, u = np.zeros(4), np.zeros(4), np.zeros(4)
     before, integral = np.zeros(4), np.zeros(4)
     h, total = p[8], 0.0

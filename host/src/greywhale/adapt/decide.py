@@ -32,8 +32,8 @@ from greywhale.adapt.propose import Proposal, Task
 from greywhale.adapt.quiet import Swings, find_excess
 from greywhale.adapt.stretch import Stretch
 from greywhale.base.types import Controllers
+from greywhale.loop.controllers import controllers_of
 from greywhale.protocol.table import ParameterTable
-from greywhale.simulate.controllers import controllers_of
 from greywhale.tune.model import Model
 
 # Stretches (of a second): kept in all, seen with the running set before a search, and new ones between two searches.

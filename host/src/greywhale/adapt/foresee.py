@@ -9,7 +9,7 @@ import numpy as np
 from greywhale.adapt.live_model import LiveModel
 from greywhale.adapt.stretch import ROWS, Stretch, chains_of, traces_of
 from greywhale.base.types import Controllers, Floats
-from greywhale.commission.predict import predict
+from greywhale.loop.led_model import predict
 from greywhale.protocol.table import ParameterTable
 
 # A chain begins at rest for the model, and in the middle of anything for the arm: its first stretches show neither.

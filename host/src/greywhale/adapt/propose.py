@@ -17,9 +17,9 @@ from greywhale.adapt.live_model import LiveModel
 from greywhale.adapt.stretch import ROWS, Stretch, chains_of, traces_of
 from greywhale.base.types import Controllers, Floats
 from greywhale.files.trajectory import Trajectory
+from greywhale.loop.controllers import controllers_of
 from greywhale.protocol.firmware import JOINTS, TICK_S
 from greywhale.protocol.table import ParameterTable
-from greywhale.simulate.controllers import controllers_of
 from greywhale.tune import tune
 from greywhale.tune.model import Model
 

@@ -18,7 +18,7 @@ from greywhale.base.types import Floats
 from greywhale.commission.judge import BEARABLE, Limits
 from greywhale.commission.measures import NAMES, Measures
 from greywhale.commission.motions import PARTS
-from greywhale.motion.swings import QUIET_SHARE, chatter_of_record, rattle_of_record, ripple_of_record, unrest
+from greywhale.measure.swings import QUIET_SHARE, chatter_of_record, rattle_of_record, ripple_of_record, unrest
 from greywhale.protocol.firmware import JOINTS
 
 # A hand trembles; its leader rests within this (rad).

@@ -21,10 +21,10 @@ from greywhale.base.errors import UserError
 from greywhale.base.study import Workers
 from greywhale.base.types import NotedProgress, show_no_progress
 from greywhale.board.device import Device, hold_ctrl_c
+from greywhale.board.hunting_stop import Hunting, HuntingStop
 from greywhale.board.record import BUSY_LEASE_MS
 from greywhale.board.stream import Received, stream, why_stopped
 from greywhale.board.upload import read_parameters, run_set, upload_set
-from greywhale.commission.hunting_stop import Hunting, HuntingStop
 from greywhale.commission.start import refuse_uncalibrated
 from greywhale.files import controller as controller_file
 from greywhale.protocol import schema

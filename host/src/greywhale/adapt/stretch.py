@@ -9,7 +9,7 @@ import numpy as np
 
 from greywhale.base.types import Floats
 from greywhale.board.stream import Received
-from greywhale.commission.measures import Traces
+from greywhale.loop.traces import Traces
 from greywhale.protocol import schema
 from greywhale.protocol.firmware import ANGLE_LSB, TICK_S
 

@@ -18,7 +18,7 @@ from greywhale.board.device import Device
 from greywhale.board.refusal import RefusedError
 from greywhale.board.stream import why_stopped
 from greywhale.files.trajectory import Trajectory
-from greywhale.motion.generate import minimum_jerk
+from greywhale.loop.leader_motions import minimum_jerk
 from greywhale.protocol import schema
 from greywhale.protocol.firmware import (
     ANGLE_LSB,

@@ -15,8 +15,8 @@ from greywhale.files.log.check import Check
 from greywhale.files.log.condition import Gap
 from greywhale.files.log.driven import tell_powerless
 from greywhale.files.outputs import require_new
-from greywhale.motion import Evaluation, evaluate
-from greywhale.motion.evaluate import EvaluationFacts
+from greywhale.measure import Evaluation, evaluate
+from greywhale.measure.evaluate import EvaluationFacts
 from greywhale.pictures.kinds import kind_of
 from greywhale.protocol.joints import named, unused
 

@@ -17,7 +17,7 @@ from greywhale.files.leader import load_leader
 from greywhale.files.names import suggesting
 from greywhale.files.outputs import require_new
 from greywhale.files.trajectory import Trajectory
-from greywhale.motion import multi_steps, steps
+from greywhale.loop import multi_steps, steps
 from greywhale.protocol.firmware import FASTEST_LED_RAD_S
 from greywhale.protocol.ports import choose_port
 

@@ -13,7 +13,7 @@ from greywhale.cli import completion
 from greywhale.cli.output import FILE, json_option, option, overwrite_option, progress, show
 from greywhale.files import controller as controller_file
 from greywhale.files.outputs import require_files, require_folder, require_new, require_no_files
-from greywhale.simulate import controller_row
+from greywhale.loop import controller_row
 from greywhale.tune import METHODS, STRATEGIES, check_request, tune
 from greywhale.tune.model import SAMPLES, load_model
 from greywhale.tune.report.controller_file import save

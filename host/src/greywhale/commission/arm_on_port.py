@@ -15,10 +15,10 @@ from pathlib import Path
 from greywhale.base.errors import UserError
 from greywhale.base.types import Floats, Progress
 from greywhale.board.device import Device, hold_ctrl_c
+from greywhale.board.hunting_stop import Hunting, HuntingStop
 from greywhale.board.record import BUSY_LEASE_MS, pose_of, record_led
 from greywhale.board.stream import LeaseLostError
 from greywhale.board.upload import read_parameters, run_set, upload_set
-from greywhale.commission.hunting_stop import Hunting, HuntingStop
 from greywhale.files.log import Log, read_evidence
 from greywhale.files.trajectory import Trajectory
 from greywhale.protocol import schema

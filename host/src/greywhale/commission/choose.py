@@ -14,7 +14,7 @@ from greywhale.base.types import Integers
 from greywhale.commission.arm_on_port import ArmOnPort
 from greywhale.commission.judge import TrialVerdict
 from greywhale.commission.trials import Trial, Trials
-from greywhale.simulate.controllers import controllers_of
+from greywhale.loop.controllers import controllers_of
 
 MOST_CONFIRMATIONS = 12
 Row = Integers  # (13,)

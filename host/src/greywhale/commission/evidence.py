@@ -9,11 +9,11 @@ import numpy as np
 from greywhale.arm import ArmParameters
 from greywhale.arm.plants import column, plant_row
 from greywhale.base.types import Floats
-from greywhale.commission.measures import Traces
-from greywhale.commission.predict import predict
 from greywhale.commission.trials import Trial, Trials
 from greywhale.files.log import Log, read_evidence
-from greywhale.motion.swings import LIMIT_CYCLE, turns_of, unrest
+from greywhale.loop.led_model import predict
+from greywhale.loop.traces import Traces
+from greywhale.measure.swings import LIMIT_CYCLE, turns_of, unrest
 from greywhale.protocol.firmware import JOINTS, TICK_S
 from greywhale.protocol.table import CONTROLLER_COLUMNS, ParameterTable
 

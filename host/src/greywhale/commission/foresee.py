@@ -16,15 +16,15 @@ import numpy as np
 from greywhale.arm import ArmParameters
 from greywhale.arm.plants import plant_row
 from greywhale.base.types import Controllers, Flags, Floats
-from greywhale.commission.measures import Measures, Traces, measure
+from greywhale.commission.measures import Measures, measure
 from greywhale.commission.motions import PARTS, Check
-from greywhale.commission.predict import predict
-from greywhale.motion import multi_steps
-from greywhale.motion.swings import most_unrest
+from greywhale.loop import Experiment, multi_steps
+from greywhale.loop.controllers import controllers_of
+from greywhale.loop.led_model import predict
+from greywhale.loop.traces import Traces
+from greywhale.measure.swings import most_unrest
 from greywhale.protocol.firmware import JOINTS
 from greywhale.protocol.table import ParameterTable
-from greywhale.simulate import Experiment
-from greywhale.simulate.controllers import controllers_of
 from greywhale.tune.search.training import clip_motion, reach
 
 # Of the error before, at most so much: the rest of the way to 1 is the model's own error.

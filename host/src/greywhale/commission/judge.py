@@ -10,7 +10,7 @@ import numpy as np
 from greywhale.base.types import Flags, Floats
 from greywhale.commission.measures import HAND_LED, HOLDING, Measures
 from greywhale.commission.motions import PARTS
-from greywhale.motion.swings import CHATTER_AT_REST_HZ, RATTLE_MOVING_RAD
+from greywhale.measure.swings import CHATTER_AT_REST_HZ, RATTLE_MOVING_RAD
 from greywhale.protocol.firmware import JOINTS
 
 # Unrest and rattling may grow by these factors, but not above this (rad rms). Below the second number nobody sees them,

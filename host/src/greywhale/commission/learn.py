@@ -12,13 +12,13 @@ from greywhale.arm import ArmParameters
 from greywhale.base.types import Controllers, Floats, NotedProgress
 from greywhale.commission.evidence import Evidence
 from greywhale.commission.journal import AnewError, CommissioningJournal
-from greywhale.commission.predict import predict
 from greywhale.commission.request import CommissioningRequest
 from greywhale.commission.trials import Trial
 from greywhale.files import controller as controller_file
 from greywhale.identify import IdentificationResult, identify, validated
+from greywhale.loop import controller_row
+from greywhale.loop.led_model import predict
 from greywhale.protocol.table import ParameterTable
-from greywhale.simulate import controller_row
 from greywhale.tune import DEFAULT_BUDGET, TuningResult, tune
 from greywhale.tune.model import Model, load_model
 from greywhale.tune.report.controller_file import save

@@ -1,10 +1,10 @@
 """What a log of the check says about every joint: error, unrest and ripple at rest, rattling, chatter, voltage.
 
 - error: mean of (leader - follower)², rad²; in the part "holding still" only while the joint's own leader rests.
-- unrest, rattle, chatter, ripple: see `motion/swings.py`; rattle only while a hand leads, ripple at rest after "moves",
-  where rests are longest.
+- unrest, rattle, chatter, ripple: see `measure/swings.py`; rattle only while a hand leads, ripple at rest after
+  "moves", where rests are longest.
 - voltage: mean of |u|, V.
-- overshoot and settling: of the part "moves", by `motion/step_response.py`, % and s; no settling where a step never
+- overshoot and settling: of the part "moves", by `measure/step_response.py`, % and s; no settling where a step never
   settled.
 """
 
@@ -19,9 +19,10 @@ from greywhale.base.types import Floats, PerJoint
 from greywhale.commission.motions import PARTS, Check
 from greywhale.files.log import Log
 from greywhale.identify.data import at
-from greywhale.motion.runs import REST_RAD, REST_S, resting
-from greywhale.motion.step_response import answer, departures, worst
-from greywhale.motion.swings import (
+from greywhale.loop.traces import Traces
+from greywhale.measure.runs import REST_RAD, REST_S, resting
+from greywhale.measure.step_response import answer, departures, worst
+from greywhale.measure.swings import (
     REST_AFTER_S,
     STILL_RAD,
     chatter_of_record,
@@ -36,20 +37,6 @@ HOLDING = "holding still"
 STEPS = "moves"
 HAND_LED = ("reaches", "slow motion")  # parts in which rattling is measured; the others have edges that no hand makes
 NAMES = ("error", "unrest", "rattle", "chatter", "ripple", "voltage", "overshoot", "settling")
-
-
-@dataclass(frozen=True)
-class Traces:
-    """A played check on an even grid of 1 ms; `begins` is the time (s) at which the check begins in it."""
-
-    leader: Floats  # (rows, 4) rad
-    follower: Floats  # (rows, 4) rad
-    voltage: Floats  # (rows, 4) V
-    begins: float
-
-    def rows(self, part: tuple[float, float]) -> slice:
-        first, last = (max(0, round((self.begins + moment) / TICK_S)) for moment in part)
-        return slice(min(first, len(self.leader)), min(last, len(self.leader)))
 
 
 class PartFacts(TypedDict):

@@ -11,8 +11,8 @@ import numpy as np
 
 from greywhale.base.types import Floats
 from greywhale.files.trajectory import Trajectory
-from greywhale.motion import human_reaches
-from greywhale.motion.generate import RANGE_RAD, minimum_jerk
+from greywhale.loop import human_reaches
+from greywhale.loop.leader_motions import RANGE_RAD, minimum_jerk
 from greywhale.protocol.firmware import FASTEST_LED_RAD_S, JOINTS
 
 RATE_HZ = 200.0

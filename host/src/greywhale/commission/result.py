@@ -14,8 +14,8 @@ from greywhale.base.types import Crc
 from greywhale.commission.learn import LearntController
 from greywhale.commission.measures import Measures, PartFacts, measure
 from greywhale.commission.motions import PARTS, Check
-from greywhale.commission.predict import predict
 from greywhale.commission.trials import Trial, TrialFacts, Trials
+from greywhale.loop.led_model import predict
 
 
 class RoundFacts(TypedDict):

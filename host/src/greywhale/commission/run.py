@@ -34,9 +34,9 @@ from greywhale.files.parameter_file import load as load_parameters
 from greywhale.files.parameter_file import save as save_parameters
 from greywhale.identify.excite import design
 from greywhale.identify.excite.limits import limits_of
+from greywhale.loop.controllers import controllers_of
 from greywhale.protocol.firmware import JOINTS
 from greywhale.protocol.table import ParameterTable, find_board
-from greywhale.simulate.controllers import controllers_of
 from greywhale.tune.model_checks import doubt_other_arm
 
 EXCITING = "excite_leader.csv"

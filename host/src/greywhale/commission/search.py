@@ -24,15 +24,15 @@ from greywhale.base.types import Controllers, Flags, Floats, NotedProgress
 from greywhale.commission.foresee import Foresight
 from greywhale.commission.judge import LED, RESTLESS, Limits
 from greywhale.commission.measures import Measures, measure
-from greywhale.commission.predict import LedModel
 from greywhale.commission.trials import Trial, Trials
 from greywhale.fuzzy.settings import GAIN_UNIT
 from greywhale.identify import loosen_gears
-from greywhale.motion.swings import QUIET_SHARE
+from greywhale.loop.controllers import controllers_of
+from greywhale.loop.led_model import LedModel
+from greywhale.measure.swings import QUIET_SHARE
 from greywhale.protocol.firmware import JOINTS
 from greywhale.protocol.joints import unused
 from greywhale.protocol.table import CONTROLLER_COLUMNS
-from greywhale.simulate.controllers import controllers_of
 from greywhale.tune.default import METHOD
 from greywhale.tune.judge.margins import TEETH, TWICE, Margins, penalty, with_gain
 from greywhale.tune.model import Model

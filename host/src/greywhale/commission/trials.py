@@ -13,13 +13,14 @@ from greywhale.commission.arm_on_port import ArmOnPort, PlayedMotion
 from greywhale.commission.foresee import Foresight
 from greywhale.commission.journal import AnewError, CommissioningJournal
 from greywhale.commission.judge import Limits, TrialVerdict, judge
-from greywhale.commission.measures import Measures, PartFacts, Traces, measure, traces_of
+from greywhale.commission.measures import Measures, PartFacts, measure, traces_of
 from greywhale.commission.motions import Check
 from greywhale.files.log import read_evidence
-from greywhale.motion.swings import QUIET_SHARE
+from greywhale.loop.controllers import controllers_of
+from greywhale.loop.traces import Traces
+from greywhale.measure.swings import QUIET_SHARE
 from greywhale.protocol.firmware import JOINTS
 from greywhale.protocol.table import CONTROLLER_COLUMNS, ParameterTable
-from greywhale.simulate.controllers import controllers_of
 
 BEFORE = "before"
 _COLUMNS = len(CONTROLLER_COLUMNS)

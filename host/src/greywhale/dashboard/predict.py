@@ -12,10 +12,10 @@ import scipy.interpolate  # noqa: F401 # a trajectory would load it when it is f
 from greywhale.arm.parameters import ArmParameters
 from greywhale.arm.plants import plant_row
 from greywhale.files.trajectory import Trajectory
-from greywhale.motion.generate import RATE_HZ, minimum_jerk, multi_steps
+from greywhale.loop import Experiment, controllers_of
+from greywhale.loop.leader_motions import RATE_HZ, minimum_jerk, multi_steps
 from greywhale.protocol.firmware import JOINTS, TICK_S, pwm_steps
 from greywhale.protocol.table import ParameterTable
-from greywhale.simulate import Experiment, controllers_of
 
 STEP_RAD, REACH_RAD, REACH_S = 0.5, 1.0, 0.8
 BEFORE_S, AFTER_S = 0.2, 1.3

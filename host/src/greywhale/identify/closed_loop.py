@@ -15,10 +15,10 @@ from greywhale.arm.parameters import MOST_NOISE_V, Potentiometer
 from greywhale.base.types import Floats
 from greywhale.identify.data import BLOCK_S, Prepared, at, part_of, pot_noise
 from greywhale.identify.space import Space
+from greywhale.loop.closed_loop import ClosedLoop, known_readings, shown_angles, with_ideal_follower
+from greywhale.loop.controllers import controllers_of
 from greywhale.protocol.firmware import JOINTS, TICK_S
 from greywhale.protocol.table import ParameterTable
-from greywhale.simulate.closed_loop import ClosedLoop, known_readings, shown_angles, with_ideal_follower
-from greywhale.simulate.controllers import controllers_of
 
 # The loop stands still at the first pose for so many ticks before the log begins, so that it starts at rest.
 LEAD_TICKS = 500

@@ -12,7 +12,7 @@ from greywhale.arm.parameters import USUAL_TRACK_RAD
 from greywhale.base.types import Floats
 from greywhale.files.log import Log
 from greywhale.files.log.driven import MOTION_RAD, driven_rows, undriven
-from greywhale.motion.runs import Run, gap_free_runs
+from greywhale.measure.runs import Run, gap_free_runs
 from greywhale.protocol.firmware import CONVERSIONS, JOINTS, TICK_S
 
 COUNTS = 1024  # of the converter

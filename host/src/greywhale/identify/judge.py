@@ -18,10 +18,10 @@ from greywhale.arm.parameters import JOINT_NAMES
 from greywhale.base.types import Floats, PerJoint
 from greywhale.identify.closed_loop import COMPARED_TICKS, Loop
 from greywhale.identify.data import COUNTS, Prepared
-from greywhale.identify.hunting import Swings, describe_difference, swings_of
 from greywhale.identify.space import Space
 from greywhale.identify.windows import WindowResidual
-from greywhale.motion.swings import smooth_motion
+from greywhale.measure.swings import smooth_motion
+from greywhale.measure.swings_in_logs import Swings, describe_difference, swings_of
 from greywhale.protocol.firmware import JOINTS, TICK_S
 from greywhale.protocol.table import ParameterTable
 

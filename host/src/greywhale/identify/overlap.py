@@ -11,7 +11,7 @@ from greywhale.base.errors import BadUsage
 from greywhale.base.types import Floats
 from greywhale.files.log import Log
 from greywhale.identify.data import LIVELY_RAD
-from greywhale.motion.runs import stretches
+from greywhale.measure.runs import stretches
 
 # So many rows one after another are not the same by chance (a power of two). At rest they may be: only stretches in
 # which the arm moves count.

@@ -21,8 +21,8 @@ from greywhale.base.types import Floats
 from greywhale.identify.found_model import FoundModel, ParameterEstimate
 from greywhale.identify.pack_search import PackSearch
 from greywhale.identify.request import IdentificationRequest
+from greywhale.loop import plant_row
 from greywhale.protocol.firmware import JOINTS
-from greywhale.simulate import plant_row
 
 VALUES = ("inertia", "resistance", "torque_constant", "viscous", "gear_ratio")
 # Table 2. It prints 19 lower bounds for 20 values: the third joint's is missing a 0. Zero itself would divide by zero.

@@ -7,12 +7,12 @@ from pathlib import Path
 from greywhale.identify.closed_loop import COMPARED_TICKS, Loop
 from greywhale.identify.judge import JudgedLog, LogVerdict
 from greywhale.identify.result import IdentificationResult
+from greywhale.loop import plant_row
 from greywhale.pictures import looks
 from greywhale.pictures.identification import Trace, plot_convergence, plot_responses
 from greywhale.pictures.names import distinct_names
 from greywhale.pictures.page import save_into, style
 from greywhale.pictures.plotting import Figure
-from greywhale.simulate import plant_row
 
 
 def draw(outcome: IdentificationResult, folder: Path) -> list[Path]:

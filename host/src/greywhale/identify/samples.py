@@ -14,8 +14,8 @@ from greywhale.arm.plants import PLANT_COLUMNS, check_plants, column
 from greywhale.base.errors import BadUsage, UserError
 from greywhale.base.types import Floats
 from greywhale.identify.space import KINDS, Parameter, Space
+from greywhale.loop import plant_row
 from greywhale.protocol.firmware import JOINTS
-from greywhale.simulate import plant_row
 
 EVERY = 3  # a rival takes the place of one draw in so many
 

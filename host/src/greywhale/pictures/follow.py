@@ -17,7 +17,7 @@ from greywhale.base.errors import BadUsage
 from greywhale.base.types import Floats
 from greywhale.files.log import Log
 from greywhale.files.log.driven import following_rows
-from greywhale.motion import evaluate
+from greywhale.measure import evaluate
 from greywhale.pictures import looks
 from greywhale.pictures.kinds import kind_of
 from greywhale.pictures.page import JOINTS, WIDE, headline, leave, legend_below, save, style

@@ -6,9 +6,9 @@ from collections.abc import Sequence
 
 from greywhale.base.types import Controllers
 from greywhale.fuzzy.settings import SET_UNIT
+from greywhale.loop import CONTROLLER_COLUMNS
 from greywhale.pictures import looks
 from greywhale.pictures.plotting import Axes
-from greywhale.simulate import CONTROLLER_COLUMNS
 
 # Of the error and of its change: left, the middle's two, right.
 _CORNERS = ("ne_c", "ze_a", "ze_c", "pe_b"), ("nce_c", "zce_a", "zce_c", "pce_b")

@@ -28,7 +28,7 @@ import numpy as np
 from greywhale.arm.parameters import with_usual_noise
 from greywhale.base.errors import counted
 from greywhale.base.types import Controllers, Flags, Floats
-from greywhale.motion.swings import CHATTER_AT_REST_HZ, CHATTER_MOVING_HZ, LIMIT_CYCLE, RATTLE_MOVING_RAD
+from greywhale.measure.swings import CHATTER_AT_REST_HZ, CHATTER_MOVING_HZ, LIMIT_CYCLE, RATTLE_MOVING_RAD
 from greywhale.optimise.optimiser import PACK
 from greywhale.optimise.relative import RelativeWolfWhale
 from greywhale.protocol.joints import unused

@@ -18,11 +18,11 @@ from greywhale.base.types import Floats
 from greywhale.files import parameter_file
 from greywhale.files.arm import content_of, load_arm
 from greywhale.identify import loosen_gears, sampled_plants
+from greywhale.loop import plant_row
+from greywhale.loop.controllers import controllers_of
 from greywhale.protocol.joints import require_same
 from greywhale.protocol.schema import Board
 from greywhale.protocol.table import ParameterTable
-from greywhale.simulate import plant_row
-from greywhale.simulate.controllers import controllers_of
 from greywhale.tune import model_checks as checks
 from greywhale.tune.model_checks import Doubt, Identification
 from greywhale.tune.model_edits import UNSEALED, doubt_edits

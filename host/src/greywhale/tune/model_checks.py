@@ -17,13 +17,12 @@ from greywhale.base.types import Floats
 from greywhale.identify import sampled_plants
 from greywhale.identify.judge import FIT, LogVerdict, warnings_of
 from greywhale.identify.uncertainty import EXCITATION
-from greywhale.motion import human_reaches
+from greywhale.loop import Experiment, human_reaches, plant_row
+from greywhale.loop.controllers import controllers_of
 from greywhale.protocol import schema
 from greywhale.protocol.firmware import TICK_S
 from greywhale.protocol.schema import Board
 from greywhale.protocol.table import ParameterTable, find_board, refuse_unknown
-from greywhale.simulate import Experiment, plant_row
-from greywhale.simulate.controllers import controllers_of
 from greywhale.tune.search.training import fit_motion, moves, reach
 
 # Half of the arms that the logs allow may follow a motion differently from the estimate by this share of its tracking

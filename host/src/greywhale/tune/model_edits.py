@@ -7,7 +7,7 @@ import numpy as np
 from greywhale.arm import ArmParameters
 from greywhale.files.model import seals
 from greywhale.identify import sampled_plants
-from greywhale.simulate import PLANT_COLUMNS
+from greywhale.loop import PLANT_COLUMNS
 from greywhale.tune.model_checks import Doubt, Identification, with_one_uncertain
 
 # How far an arm and its own table may differ: relative, and its gaps (rad).

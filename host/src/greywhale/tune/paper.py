@@ -27,9 +27,8 @@ import numpy as np
 from greywhale.arm.plants import column
 from greywhale.base.types import Controllers, Floats
 from greywhale.files.trajectory import Trajectory
-from greywhale.motion import steps
+from greywhale.loop import Experiment, steps
 from greywhale.protocol.firmware import JOINTS
-from greywhale.simulate import Experiment
 from greywhale.tune.judge.held_out import judge_held_out
 from greywhale.tune.judge.margins import Margins
 from greywhale.tune.method import Costs, Judgement

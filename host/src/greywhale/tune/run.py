@@ -7,9 +7,9 @@ from pathlib import Path
 from greywhale.base.errors import MOST_SEED, MOST_WORKERS, BadUsage, require_within
 from greywhale.base.types import Controllers, NotedProgress, show_no_progress
 from greywhale.files.trajectory import Trajectory
+from greywhale.loop.controllers import check_controllers
 from greywhale.optimise import METHODS as OPTIMISERS
 from greywhale.protocol.joints import ALL
-from greywhale.simulate.controllers import check_controllers
 from greywhale.tune import default, paper
 from greywhale.tune.default import DefaultMethod
 from greywhale.tune.method import Judgement, Method

@@ -1,4 +1,4 @@
-// The running measures of each joint, as greywhale.motion defines them: error rms, ripple of the voltage, delay.
+// The running measures of each joint, as greywhale.measure defines them: error rms, ripple of the voltage, delay.
 
 import { JOINTS, TICKS_A_SECOND, type Quantity, type Samples } from "./samples";
 

@@ -21,7 +21,7 @@ from greywhale.files.log import Log
 from greywhale.files.paper_tables import paper_table
 from greywhale.files.trajectory import Trajectory
 from greywhale.identify.excite import design
-from greywhale.motion import human_reaches
+from greywhale.loop import human_reaches
 from greywhale.protocol.table import ParameterTable
 
 UNTUNED, OTHER = "before_tuning", "table_9"  # of the paper: where tuning starts, and the changed controller

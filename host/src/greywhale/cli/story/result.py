@@ -11,8 +11,8 @@ from greywhale.arm.parameters import JOINT_NAMES
 from greywhale.base.types import Crc
 from greywhale.cli.story.learn import Learnt
 from greywhale.cli.story.recorder import Recorded
-from greywhale.motion import Evaluation, JointMeasures, more_overshoot
-from greywhale.motion.evaluate import EvaluationFacts
+from greywhale.measure import Evaluation, JointMeasures, more_overshoot
+from greywhale.measure.evaluate import EvaluationFacts
 
 Measure = tuple[str, Callable[[JointMeasures], str]]  # heading, and a joint's cell
 MEASURES: tuple[Measure, ...] = (

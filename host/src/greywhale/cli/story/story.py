@@ -29,7 +29,8 @@ from greywhale.files.arm import default_arm, load_arm
 from greywhale.files.leader import load_leader, save_leader
 from greywhale.files.paper_tables import paper_table
 from greywhale.files.trajectory import Trajectory
-from greywhale.motion import evaluate, human_reaches
+from greywhale.loop import human_reaches
+from greywhale.measure import evaluate
 from greywhale.pictures.follow import draw_following, trace
 from greywhale.protocol.schema import Board
 from greywhale.protocol.table import ParameterTable

@@ -26,9 +26,9 @@ from greywhale.identify.excite.trial import ROW_S, Trial, try_motion
 from greywhale.identify.samples import read_search
 from greywhale.identify.space import MOTOR, Parameter, Space
 from greywhale.identify.uncertainty import open_beyond
+from greywhale.loop import plant_row
 from greywhale.optimise import DEFAULT, create
 from greywhale.protocol.table import ParameterTable
-from greywhale.simulate import plant_row
 
 BUDGET = 300
 MOST_BUDGET = 100_000  # takes a day

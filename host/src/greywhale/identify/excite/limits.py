@@ -13,10 +13,10 @@ from greywhale.base.errors import BadUsage, UserError
 from greywhale.base.types import Floats
 from greywhale.identify import sampled_plants
 from greywhale.identify.space import MOTOR, Space
+from greywhale.loop import plant_row
 from greywhale.protocol.firmware import FASTEST_LED_RAD_S, JOINTS
 from greywhale.protocol.joints import require_same
 from greywhale.protocol.table import ParameterTable
-from greywhale.simulate import plant_row
 
 # Without --range a joint moves at most this far to either side of where it is (rad).
 REACH_RAD = 1.0

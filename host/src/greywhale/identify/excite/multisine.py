@@ -16,7 +16,7 @@ import numpy as np
 from greywhale.base.types import Floats
 from greywhale.files.trajectory import Trajectory
 from greywhale.identify.excite.limits import Limits
-from greywhale.motion.generate import minimum_jerk
+from greywhale.loop.leader_motions import minimum_jerk
 from greywhale.protocol.firmware import JOINTS, POINT_S
 
 SINES = 6

@@ -9,10 +9,10 @@ import numpy as np
 from greywhale.arm.parameters import usual_pots
 from greywhale.base.types import Floats
 from greywhale.identify.excite.multisine import board_reference
+from greywhale.loop.closed_loop import ClosedLoop, known_readings, with_ideal_follower
+from greywhale.loop.controllers import controllers_of
 from greywhale.protocol.firmware import JOINTS
 from greywhale.protocol.table import ParameterTable
-from greywhale.simulate.closed_loop import ClosedLoop, known_readings, with_ideal_follower
-from greywhale.simulate.controllers import controllers_of
 
 EVERY = 16  # ticks between rows of the traces
 ROW_S = EVERY / 1000

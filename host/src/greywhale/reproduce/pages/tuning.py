@@ -10,6 +10,7 @@ import numpy as np
 from greywhale.base.types import Controllers
 from greywhale.files.controller import load
 from greywhale.files.paper_tables import paper_table
+from greywhale.loop import CONTROLLER_COLUMNS
 from greywhale.pictures import looks
 from greywhale.pictures import paper_curves as curves
 from greywhale.pictures.identification import Trace
@@ -21,7 +22,6 @@ from greywhale.reproduce.pages.numbers import lower, one, several
 from greywhale.reproduce.pages.printed import FIG_19_FLAT, NO_WIDTH, TABLE_7
 from greywhale.reproduce.work.grey_box import STRATEGIES, supply_of
 from greywhale.reproduce.work.motions import PERIOD_MS, printed
-from greywhale.simulate import CONTROLLER_COLUMNS
 from greywhale.tune.paper import AGENTS, ITERATIONS, LARGEST_SUPPLY_V
 from greywhale.tune.report.tables import FACTORS, SETS
 

@@ -18,7 +18,8 @@ from greywhale.base.types import Controllers
 from greywhale.files.leader import save_leader
 from greywhale.files.log import Log, read_evidence
 from greywhale.files.trajectory import Trajectory
-from greywhale.motion import evaluate, human_reaches
+from greywhale.loop import human_reaches
+from greywhale.measure import evaluate
 from greywhale.protocol.table import ParameterTable
 from greywhale.reproduce.work.arms import DEFAULT, file_of
 from greywhale.reproduce.work.motions import MOTIONS, SHOWN_S, measures, paper_board, printed, rounded, shown

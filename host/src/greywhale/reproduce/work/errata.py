@@ -17,9 +17,9 @@ from greywhale.arm.printed import BODY_ERRATA, ERRATA, PrintedBody, motor_equati
 from greywhale.base.types import Controllers, Floats
 from greywhale.files.arm import load_arm
 from greywhale.fuzzy.settings import GAIN_UNIT, SET_UNIT
+from greywhale.loop import CONTROLLER_COLUMNS
 from greywhale.protocol.firmware import JOINTS
 from greywhale.reproduce.work.motions import PERIOD_MS, printed
-from greywhale.simulate import CONTROLLER_COLUMNS
 
 SWING_S, SWING_STEP_S = 5.0, 5e-4
 SWING = (0.0, 0.4, -0.6, 0.2, 2.0, -1.0, 1.5, 3.0)  # rad and rad/s of the free arm at the start

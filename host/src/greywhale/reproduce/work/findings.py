@@ -16,13 +16,12 @@ from greywhale.fuzzy.settings import GAIN_UNIT
 from greywhale.identify.closed_loop import Loop
 from greywhale.identify.data import prepare
 from greywhale.identify.paper import LOWER, UPPER, VALUES, PaperSearch
-from greywhale.motion import steps
+from greywhale.loop import CONTROLLER_COLUMNS, Experiment, steps
 from greywhale.protocol.firmware import JOINTS
 from greywhale.reproduce.work.bench import record_data
 from greywhale.reproduce.work.grey_box import setting, supply_of
 from greywhale.reproduce.work.motions import MOTIONS, WAIT_S, judged, paper_board, play, printed
 from greywhale.reproduce.work.readings import LENGTHS_S
-from greywhale.simulate import CONTROLLER_COLUMNS, Experiment
 from greywhale.tune.model import load_model
 from greywhale.tune.paper import AGENTS, BUDGET, METHOD, Loops
 from greywhale.tune.search.lockstep import LockstepSearch, SearchState

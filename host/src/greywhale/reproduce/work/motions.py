@@ -14,9 +14,9 @@ from greywhale.files.log import Log
 from greywhale.files.log.layout import Origin
 from greywhale.files.paper_tables import paper_table
 from greywhale.files.trajectory import Trajectory
-from greywhale.motion import Evaluation, evaluate, multi_steps, steps
+from greywhale.loop import Experiment, controller_row, multi_steps, steps
+from greywhale.measure import Evaluation, evaluate
 from greywhale.protocol.table import ParameterTable
-from greywhale.simulate import Experiment, controller_row
 
 # From the moment the motors go on to the leader's first move, as on the bench.
 WAIT_S = 1.5

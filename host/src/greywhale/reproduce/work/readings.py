@@ -16,7 +16,7 @@ from greywhale.arm.plants import column, plant_row
 from greywhale.base.types import Floats
 from greywhale.files.arm import load_arm
 from greywhale.files.trajectory import Trajectory
-from greywhale.motion import multi_steps, steps
+from greywhale.loop import multi_steps, steps
 from greywhale.protocol.firmware import JOINTS
 from greywhale.reproduce.work import errata
 from greywhale.reproduce.work.arms import STICKY

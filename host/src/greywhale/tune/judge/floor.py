@@ -35,10 +35,10 @@ from greywhale.arm.plants import check_plants, column, rigid_joints
 from greywhale.base.errors import BadUsage
 from greywhale.base.types import Floats
 from greywhale.files.trajectory import Trajectory
-from greywhale.motion.runs import resting
+from greywhale.loop import leader_slices, plant_row
+from greywhale.loop.leader import SLICE_S, SLICES_PER_TICK
+from greywhale.measure.runs import resting
 from greywhale.protocol.firmware import JOINTS
-from greywhale.simulate import leader_slices, plant_row
-from greywhale.simulate.leader import SLICE_S, SLICES_PER_TICK
 
 # A floor below this (rad^2) may be mere backlash (some mrad), unless the bound says that it is the supply; one below a
 # millirad is nothing that a potentiometer could tell.

@@ -15,11 +15,11 @@ from greywhale.base.types import Controllers, Floats, PerJoint
 from greywhale.files.log import Log
 from greywhale.files.log.layout import Origin
 from greywhale.files.trajectory import Trajectory
-from greywhale.motion import Evaluation, evaluate, human_reaches, multi_steps, steps
-from greywhale.motion.evaluate import EvaluationFacts
+from greywhale.loop import Experiment, human_reaches, multi_steps, steps
+from greywhale.measure import Evaluation, evaluate
+from greywhale.measure.evaluate import EvaluationFacts
 from greywhale.protocol.joints import Joints
 from greywhale.protocol.table import ParameterTable
-from greywhale.simulate import Experiment
 from greywhale.tune.judge.floor import Floor, saturation_floor
 from greywhale.tune.search.training import clip_motion, fit_motion, reach
 

@@ -6,7 +6,7 @@ Different means half or twice the loop gain, one more control period of delay, o
 The leader makes large moves and stops. From SETTLE_S after each stop on, the follower must not hunt, and its duty must
 not chatter. A single overshoot, or creeping to the target, is neither. While the leader moves, in all classes of
 training motions, the follower must not rattle, and its duty must not chatter more than a gear that moves bears.
-`motion/swings.py` says what each of these words is.
+`measure/swings.py` says what each of these words is.
 """
 
 from __future__ import annotations
@@ -21,8 +21,9 @@ from greywhale.arm import ArmParameters
 from greywhale.arm.plants import columns
 from greywhale.base.types import Controllers, Flags, Floats, Integers
 from greywhale.files.trajectory import Trajectory
-from greywhale.motion.generate import minimum_jerk
-from greywhale.motion.swings import (
+from greywhale.loop import Experiment, Result, Timing
+from greywhale.loop.leader_motions import minimum_jerk
+from greywhale.measure.swings import (
     CHATTER_AT_REST_HZ,
     CHATTER_MOVING_HZ,
     LIMIT_CYCLE,
@@ -34,7 +35,6 @@ from greywhale.motion.swings import (
 )
 from greywhale.protocol.firmware import JOINTS, TICK_S
 from greywhale.protocol.table import ParameterTable
-from greywhale.simulate import Experiment, Result, Timing
 from greywhale.tune.search.objective import follow, pair_with_plants
 from greywhale.tune.search.training import EDGE_S, RATE_HZ, centre, reach, training_motions
 

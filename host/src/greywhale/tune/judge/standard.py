@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from greywhale.base.types import Flags, Floats
-from greywhale.motion.swings import QUIET_SHARE
+from greywhale.measure.swings import QUIET_SHARE
 from greywhale.protocol.firmware import JOINTS
 from greywhale.tune.judge.margins import AT_REST, TEETH, Margin, Unrest
 

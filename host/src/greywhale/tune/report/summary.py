@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from greywhale.arm.parameters import JOINT_NAMES
-from greywhale.motion import more_overshoot
+from greywhale.measure import more_overshoot
 from greywhale.tune.judge.held_out import HeldOut
 from greywhale.tune.judge.margins import GAINS, Margin
 from greywhale.tune.result import TuningResult

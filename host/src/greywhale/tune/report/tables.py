@@ -17,10 +17,10 @@ from greywhale.base.types import Controllers
 from greywhale.files.controller import load
 from greywhale.files.paper_tables import paper_table
 from greywhale.fuzzy.settings import GAIN_UNIT, SET_UNIT
-from greywhale.motion import Evaluation, more_overshoot
+from greywhale.loop import CONTROLLER_COLUMNS, controller_row
+from greywhale.measure import Evaluation, more_overshoot
 from greywhale.protocol.firmware import JOINTS
 from greywhale.protocol.joints import ALL, Joints
-from greywhale.simulate import CONTROLLER_COLUMNS, controller_row
 
 if TYPE_CHECKING:
     from greywhale.tune.result import TuningResult

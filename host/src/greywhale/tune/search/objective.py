@@ -30,9 +30,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from greywhale.base.types import Controllers, Floats
-from greywhale.motion.swings import CHATTER_MOVING_HZ, RATTLE_MOVING_RAD, chatter, rattle
+from greywhale.loop import Result
+from greywhale.measure.swings import CHATTER_MOVING_HZ, RATTLE_MOVING_RAD, chatter, rattle
 from greywhale.protocol.firmware import JOINTS
-from greywhale.simulate import Result
 from greywhale.tune.search.training import WAIT_S, TrainingMotion
 
 RMS = 6.0

@@ -26,8 +26,8 @@ from greywhale.fuzzy.settings import (
     MOST_CE_TICKS,
     SET_UNIT,
 )
+from greywhale.loop import CONTROLLER_COLUMNS
 from greywhale.protocol import schema
-from greywhale.simulate import CONTROLLER_COLUMNS
 
 STRATEGIES = ("mf", "sf", "both")
 

@@ -17,11 +17,10 @@ from greywhale.arm.plants import column
 from greywhale.base.errors import BadUsage
 from greywhale.base.types import Floats
 from greywhale.files.trajectory import Trajectory
-from greywhale.motion import human_reaches
-from greywhale.motion.generate import minimum_jerk
+from greywhale.loop import Experiment, human_reaches
+from greywhale.loop.leader_motions import minimum_jerk
 from greywhale.protocol.firmware import JOINTS
 from greywhale.protocol.table import ParameterTable
-from greywhale.simulate import Experiment
 
 RATE_HZ = 200.0
 EDGE_S = 0.04  # a hand cannot jump; as in trajectory.multi_steps

@@ -14,9 +14,9 @@ from greywhale.base.errors import UserError
 from greywhale.base.types import Floats
 from greywhale.files.log import Log
 from greywhale.files.log.layout import Origin
-from greywhale.motion import evaluate
-from greywhale.motion.delay import correlations
-from greywhale.motion.runs import gap_free_runs, last_part
+from greywhale.measure import evaluate
+from greywhale.measure.delay import correlations
+from greywhale.measure.runs import gap_free_runs, last_part
 
 STEP = 0.5
 TIME = np.arange(0, 10, 0.001)

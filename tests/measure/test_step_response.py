@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from greywhale.base.types import Floats
-from greywhale.motion import JointMeasures, evaluate, more_overshoot
-from tests.motion.test_measure import log, log_of
+from greywhale.measure import JointMeasures, evaluate, more_overshoot
+from tests.measure.test_measure import log, log_of
 
 TIME = np.arange(0, 8, 0.001)
 DAMPING, OMEGA = 0.4, 12.0

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.signal import butter, sosfilt
 
-from greywhale.motion.swings import (
+from greywhale.measure.swings import (
     BLOCK,
     FILTER_EVERY,
     RATTLE_BAND_HZ,

@@ -10,12 +10,12 @@ from greywhale.arm import ArmParameters
 from greywhale.arm.parameters import with_usual_noise
 from greywhale.arm.plants import plant_row
 from greywhale.base.types import Controllers, Floats
-from greywhale.commission.measures import Traces
+from greywhale.loop.closed_loop import ClosedLoop, known_readings, shown_angles, with_ideal_follower
+from greywhale.loop.controllers import controllers_of
+from greywhale.loop.traces import Traces
 from greywhale.protocol.firmware import JOINTS, TICK_S, pwm_steps
 from greywhale.protocol.joints import unused
 from greywhale.protocol.table import ParameterTable
-from greywhale.simulate.closed_loop import ClosedLoop, known_readings, shown_angles, with_ideal_follower
-from greywhale.simulate.controllers import controllers_of
 
 # The model stands at the log's first pose for so long before it is led, so that it starts at rest.
 LEAD_TICKS = 500

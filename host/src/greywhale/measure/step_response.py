@@ -20,7 +20,7 @@ import scipy  # loads a part of itself when it is first used
 from numpy.typing import NDArray
 
 from greywhale.base.types import Floats
-from greywhale.motion.runs import REST_RAD, REST_S, periods
+from greywhale.measure.runs import REST_RAD, REST_S, periods
 
 Bools = NDArray[np.bool_]
 

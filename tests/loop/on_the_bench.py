@@ -12,9 +12,9 @@ from greywhale import arm
 from greywhale.arm import ArmParameters
 from greywhale.base.types import Floats
 from greywhale.files.trajectory import Trajectory
+from greywhale.loop import Timing
 from greywhale.protocol import schema
 from greywhale.protocol.frames import FrameDecoder, encode_frame
-from greywhale.simulate import Timing
 from greywhale_sim.assemble import BenchOptions, build_board, wiring_of
 from greywhale_sim.bench import SLICE_CYCLES, SLICE_S, Bench
 from greywhale_sim.leader import LeaderPlayer

@@ -13,7 +13,7 @@ import scipy  # loads a part of itself when it is first used
 from numpy.typing import NDArray
 
 from greywhale.base.types import Floats
-from greywhale.motion.step_response import ONSET_RAD, Departure
+from greywhale.measure.step_response import ONSET_RAD, Departure
 
 # A joint that moves less than this (rad) shows noise rather than a delay.
 _SMALLEST_MOTION = 0.05

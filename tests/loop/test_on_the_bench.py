@@ -8,11 +8,10 @@ import pytest
 from greywhale.arm import ArmParameters
 from greywhale.arm.plants import column, columns
 from greywhale.files.arm import default_arm, load_arm
-from greywhale.motion import human_reaches, multi_steps
+from greywhale.loop import Experiment, Result, human_reaches, multi_steps, plant_row
 from greywhale.protocol.schema import Board
 from greywhale.protocol.table import ParameterTable
-from greywhale.simulate import Experiment, Result, plant_row
-from tests.simulate.on_the_bench import Recording, quiet, record
+from tests.loop.on_the_bench import Recording, quiet, record
 
 PWM_TOP = {"mega": np.array([400, 400, 400, 400]), "nano": np.array([400, 400, 255, 255])}
 SLICES_PER_TICK = 4

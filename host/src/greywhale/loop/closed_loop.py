@@ -15,9 +15,9 @@ from greywhale.arm.plant import native_potentiometers
 from greywhale.arm.plants import Plants
 from greywhale.base.errors import UserError
 from greywhale.base.types import Controllers, Floats
+from greywhale.loop.leader import SLICES_PER_TICK
 from greywhale.protocol.firmware import ANGLE_LSB, JOINTS, TICK_S, pwm_steps
 from greywhale.protocol.table import ParameterTable
-from greywhale.simulate.leader import SLICES_PER_TICK
 
 Counts = npt.NDArray[np.int16]
 

@@ -10,8 +10,8 @@ from hypothesis.extra.numpy import arrays
 from scipy.signal import butter, sosfiltfilt
 
 from greywhale.files.trajectory import POT_RANGE_RAD, Trajectory
-from greywhale.motion import human_reaches, multi_steps, steps
-from greywhale.motion.generate import RANGE_RAD, RATE_HZ, minimum_jerk
+from greywhale.loop import human_reaches, multi_steps, steps
+from greywhale.loop.leader_motions import RANGE_RAD, RATE_HZ, minimum_jerk
 from greywhale.protocol.firmware import JOINTS
 
 SEEDS = range(3)

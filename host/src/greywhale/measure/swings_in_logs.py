@@ -12,7 +12,7 @@ import numpy as np
 
 from greywhale.arm.parameters import JOINT_NAMES
 from greywhale.base.types import Floats
-from greywhale.motion.swings import smooth_motion
+from greywhale.measure.swings import smooth_motion
 from greywhale.protocol.firmware import JOINTS
 
 # Swings are looked at in pieces of this length (s) in which the leader itself makes none larger than this (rad). A

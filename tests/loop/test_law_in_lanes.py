@@ -9,7 +9,7 @@ import numpy.typing as npt
 import pytest
 
 from greywhale import _native
-from greywhale.simulate import CONTROLLER_COLUMNS
+from greywhale.loop import CONTROLLER_COLUMNS
 
 LANES = 16
 STEPS = 4000

@@ -6,11 +6,12 @@
 """
 
 from greywhale.arm.plants import PLANT_COLUMNS, plant_row
+from greywhale.loop.closed_loop import Result, Timing
+from greywhale.loop.controllers import controller_row, controllers_of, default_controller
+from greywhale.loop.experiment import Experiment
+from greywhale.loop.leader import leader_slices
+from greywhale.loop.leader_motions import human_reaches, multi_steps, steps
 from greywhale.protocol.table import CONTROLLER_COLUMNS
-from greywhale.simulate.closed_loop import Result, Timing
-from greywhale.simulate.controllers import controller_row, controllers_of, default_controller
-from greywhale.simulate.experiment import Experiment
-from greywhale.simulate.leader import leader_slices
 
 __all__ = [
     "CONTROLLER_COLUMNS",
@@ -21,6 +22,9 @@ __all__ = [
     "controller_row",
     "controllers_of",
     "default_controller",
+    "human_reaches",
     "leader_slices",
+    "multi_steps",
     "plant_row",
+    "steps",
 ]

@@ -16,7 +16,7 @@ UNEVEN = 0.05  # a row may be early or late by this share of the usual spacing
 def leader_slices(motion: Trajectory, wait_s: float, resample: bool = False) -> Floats:
     """Leader angles (rad) in every slice of 250 us: first pose for `wait_s`, then the motion.
 
-    Between the rows of an even recording runs its monotone cubic (greywhale.motion). A recording with gaps or
+    Between the rows of an even recording runs its monotone cubic (greywhale.measure). A recording with gaps or
     uneven times is refused, unless `resample` allows the same cubic to bridge them too.
     """
     if not resample:

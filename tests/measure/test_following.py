@@ -10,9 +10,8 @@ import pytest
 from greywhale.arm.plants import columns, plant_row
 from greywhale.base.types import Floats
 from greywhale.files.arm import load_arm
-from greywhale.motion import human_reaches
-from greywhale.motion.following import follows
-from greywhale.simulate import Experiment
+from greywhale.loop import Experiment, human_reaches
+from greywhale.measure.following import follows
 
 
 @pytest.mark.parametrize(

@@ -32,11 +32,11 @@ from greywhale.base.errors import UserError
 from greywhale.base.types import Floats, PerJoint
 from greywhale.files.log import Log
 from greywhale.files.log.driven import following_rows
-from greywhale.motion.delay import correlation_delay, onset_delay
-from greywhale.motion.following import follows
-from greywhale.motion.runs import REST_RAD, REST_S, Run, first_part, gap_free_runs, last_part, resting
-from greywhale.motion.step_response import Answer, answer, departures, worst
-from greywhale.motion.swings import RIPPLE_S, ripple_of_record
+from greywhale.measure.delay import correlation_delay, onset_delay
+from greywhale.measure.following import follows
+from greywhale.measure.runs import REST_RAD, REST_S, Run, first_part, gap_free_runs, last_part, resting
+from greywhale.measure.step_response import Answer, answer, departures, worst
+from greywhale.measure.swings import RIPPLE_S, ripple_of_record
 from greywhale.protocol.firmware import TICK_S
 from greywhale.protocol.joints import ALL, Joints
 

@@ -11,7 +11,7 @@ from collections import deque
 import numpy as np
 
 from greywhale.board.stream import Received
-from greywhale.motion.swings import VIOLENT, turns_of
+from greywhale.measure.swings import VIOLENT, turns_of
 from greywhale.protocol.firmware import ANGLE_LSB
 
 WINDOW_S = 0.8

@@ -23,7 +23,7 @@ import scipy  # loads a part of itself when it is first used
 
 from greywhale import _native
 from greywhale.base.types import Floats, Integers
-from greywhale.motion.runs import resting, stretches
+from greywhale.measure.runs import resting, stretches
 from greywhale.protocol.firmware import JOINTS, TICK_S, pwm_steps
 from greywhale.protocol.schema import Board
 

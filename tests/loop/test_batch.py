@@ -10,10 +10,9 @@ from greywhale import _native
 from greywhale.arm.plants import column, columns
 from greywhale.base.types import Floats
 from greywhale.files.arm import default_arm, load_arm
-from greywhale.motion import human_reaches
+from greywhale.loop import PLANT_COLUMNS, Experiment, Result, Timing, default_controller, human_reaches, plant_row
 from greywhale.protocol.table import ParameterTable
-from greywhale.simulate import PLANT_COLUMNS, Experiment, Result, Timing, default_controller, plant_row
-from tests.simulate.on_the_bench import quiet
+from tests.loop.on_the_bench import quiet
 
 INTEGERS = npt.NDArray[np.int32]
 

@@ -12,12 +12,12 @@ from greywhale.arm.plants import check_plants, column, plant_row
 from greywhale.base.errors import UserError
 from greywhale.base.types import Floats
 from greywhale.files.trajectory import Trajectory
+from greywhale.loop.closed_loop import DEFAULT_TIMING, ClosedLoop, Result, Timing, read_leader, with_right_motors
+from greywhale.loop.controllers import check_controllers, controllers_of
+from greywhale.loop.leader import SLICES_PER_TICK, leader_slices
 from greywhale.protocol.firmware import JOINTS, TICK_S
 from greywhale.protocol.joints import unused
 from greywhale.protocol.table import ParameterTable
-from greywhale.simulate.closed_loop import DEFAULT_TIMING, ClosedLoop, Result, Timing, read_leader, with_right_motors
-from greywhale.simulate.controllers import check_controllers, controllers_of
-from greywhale.simulate.leader import SLICES_PER_TICK, leader_slices
 
 STEPS_PER_TICK = (1, 2, 4)
 

@@ -10,7 +10,7 @@ import pytest
 from greywhale.base.errors import UserError
 from greywhale.files.arm import default_arm
 from greywhale.files.trajectory import Trajectory
-from greywhale.simulate import PLANT_COLUMNS, Experiment, Timing, default_controller, leader_slices, plant_row
+from greywhale.loop import PLANT_COLUMNS, Experiment, Timing, default_controller, leader_slices, plant_row
 
 EVEN = np.arange(50) * 0.02
 

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from greywhale.base.types import Floats
-from greywhale.identify.hunting import Swings, describe_difference, swings_of
 from greywhale.identify.judge import CHANGED, FIT, Following, LogVerdict, doubts_of
+from greywhale.measure.swings_in_logs import Swings, describe_difference, swings_of
 
 ROW_S = 5e-3
 TIME = np.arange(0.0, 20.0, ROW_S)

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from greywhale.board.hunting_stop import Hunting, HuntingStop
 from greywhale.board.stream import Received
-from greywhale.commission.hunting_stop import Hunting, HuntingStop
 from greywhale.protocol import schema
 from greywhale.protocol.firmware import ANGLE_LSB
 
