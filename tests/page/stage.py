@@ -23,7 +23,7 @@ from greywhale.dashboard import server
 from greywhale.dashboard.access import Access
 from greywhale.dashboard.answers import Answers
 from greywhale.dashboard.bench import BenchControls
-from greywhale.dashboard.client import Client
+from greywhale.dashboard.client import STARTS, Client
 from greywhale.dashboard.folder import Folder
 from greywhale.dashboard.history import FRAME_BYTES, History
 from greywhale.dashboard.port_holder import turn
@@ -129,6 +129,11 @@ class Stage:
         """Wait for what the board does in the time that it has."""
         with self._ready:
             assert self._ready.wait_for(condition, PATIENCE_MS / 1000)
+
+    def let_live_no_longer(self, seconds: float) -> None:
+        """Take back what time the board was given beyond this."""
+        with self._ready:
+            self._until_s = min(self._until_s, self._now_s + seconds)
 
     def command(self, text: str) -> dict[str, Any]:
         """The answer of the bench to a command, such as `pot follower 1 open`."""
@@ -251,6 +256,8 @@ class _PacedRelay(Relay):
             self._stage.let_live(LEASED_S if asked & LEASES else ANSWER_S)
         elif StopRequest.TYPE in asked:
             self._stage.let_live(1.0)
+        elif asked & STARTS:  # from now on the board waits for the page, also where a stop had given it more time
+            self._stage.let_live_no_longer(MOVING_S)
 
     def heard(self, data: bytes) -> None:
         super().heard(data)
