@@ -2,7 +2,6 @@
 #include "tick.h"
 
 #include <hal.h>
-#include <signal_chain/cosine.h>
 
 #include "counting.h"
 
@@ -123,7 +122,7 @@ void Tick::control() {
 
 template <uint8_t joint>
 inline __attribute__((always_inline)) void Tick::control_joint(uint16_t limit_mv) {
-  if (most_mv_[joint] < limit_mv) limit_mv = most_mv_[joint];
+  if (guard_.most_mv(joint) < limit_mv) limit_mv = guard_.most_mv(joint);
   const MotorVoltage out = controllers_.step(joint, sampling_.error(joint), limit_mv);
   drive_.set<joint>(out.size_mv, out.sign, sets_.running());
 }
@@ -171,43 +170,18 @@ inline void Tick::look_at_probe() {
   supervisor_.note_rails(off ? bit : uint8_t{0}, off ? uint8_t{0} : bit);
 }
 
-// What a joint may get until its next look. One that does not move is pushed with half as much again as starts it. One
-// that is held back gets what holds it against gravity, less half of what friction holds, and nothing with gravity.
-uint16_t Tick::most_mv(uint8_t joint, int16_t gravity_mv) const {
-  const supervisor::Hold hold = supervisor_.hold(joint);
-  if (hold <= supervisor::Hold::free) return UINT16_MAX;
-  const params::Table& table = sets_.running();
-  const uint8_t own = table.travel[joint].breakaway_volts;
-  int32_t mv = sampling_.error(joint) < 0 ? -gravity_mv : gravity_mv;
-  if (hold == supervisor::Hold::back) mv -= own * 50;
-  else mv += static_cast<uint16_t>((own != 0 ? own : table.stall_volts) * 150u);
-  return mv <= 0 ? uint16_t{0} : static_cast<uint16_t>(mv);
-}
-
-// The pitch joints carry what the cosine of the pitch says.
-int16_t Tick::gravity_mv(uint8_t joint) const {
-  if (joint != 1 && joint != 2) return 0;
-  const params::Table& table = sets_.running();
-  const auto pitch = static_cast<int16_t>(sampling_.follower(1) + sampling_.follower(2));
-  auto volts = static_cast<int16_t>(signal_chain::cosine(pitch) * (joint == 1 ? table.gravity_12 : table.gravity_2));
-  if (joint == 1) volts = static_cast<int16_t>(volts + signal_chain::cosine(sampling_.follower(1)) * table.gravity_1);
-  return static_cast<int16_t>(volts - (volts >> 2) + (volts >> 5));  // from 1/1280 V
-}
-
 // The next joint after each tick.
 __attribute__((noinline)) void Tick::look_at_joint() {
   const uint8_t joint = static_cast<uint8_t>(number_) % hal::joint_count;
   const params::Table& table = sets_.running();
   const params::TravelParameters& travel = table.travel[joint];
-  const auto gravity = static_cast<int16_t>(gravity_mv(joint) + supervisor_.load_mv(joint));
-  supervisor_.look_at_joint(joint,
-                            {sampling_.follower(joint), sampling_.error(joint), controllers_.volts_mv(joint), gravity},
-                            {table.speed_limit,
-                             table.runaway_limit,
-                             table.stall_volts,
-                             table.stall_time,
-                             {travel.speed_per_volt, travel.time_constant, travel.breakaway_volts}});
-  most_mv_[joint] = most_mv(joint, gravity);
+  guard_.look(supervisor_, joint, {sampling_.follower(joint), sampling_.error(joint), controllers_.volts_mv(joint), 0},
+              {table.speed_limit,
+               table.runaway_limit,
+               table.stall_volts,
+               table.stall_time,
+               {travel.speed_per_volt, travel.time_constant, travel.breakaway_volts}},
+              {sampling_.follower(1), sampling_.follower(2), table.gravity_1, table.gravity_12, table.gravity_2});
   if (!drivers_on_ || supervisor_.motors_on()) return;
   follow_supervisor();
   if (supervisor_.fault() == supervisor::Fault::unrest) begin_safe_set();

@@ -1,6 +1,7 @@
 // The tick: from the potentiometers to the motors' duties, within what the supervisor allows. Between two ticks it
 // takes orders: a host's, by the link server, and its own, such as the safe set after unrest.
 #pragma once
+#include <joint_guard.h>
 #include <link/schema.h>
 #include <stdint.h>
 #include <supervisor.h>
@@ -77,8 +78,6 @@ class Tick {
   void control();
   template <uint8_t joint>
   void control_joint(uint16_t limit_mv);
-  int16_t gravity_mv(uint8_t joint) const;
-  uint16_t most_mv(uint8_t joint, int16_t gravity_mv) const;
   void set_limit();
   void note_rails();
   void look_at_probe();
@@ -96,12 +95,12 @@ class Tick {
   Controllers controllers_;
   Drive drive_;
   supervisor::Supervisor supervisor_;
+  supervisor::JointGuard guard_;
   supervisor::Observation seen_ = {};  // what the last tick has seen
   ParameterSets sets_;
   Lead lead_;
   Scaling scaling_;
   MemoryCheck memory_;
-  uint16_t most_mv_[hal::joint_count] = {};  // what the joints' last looks leave to the controllers
 
   uint32_t number_ = 0;
   uint16_t late_ticks_ = 0, longest_us_ = 0;

@@ -1,0 +1,54 @@
+// What a joint's motor may get until the next look at the joint: all, a gentle push, or what holds it against gravity.
+#pragma once
+#include <signal_chain/cosine.h>
+#include <stdint.h>
+
+#include "supervisor.h"
+
+namespace supervisor {
+
+// The pitch of the two joints that carry something, and the voltages that hold them where their links are level.
+struct Gravity {
+  int16_t pitch_1, pitch_2;                  // q12 rad, of joint 2 from link 1
+  int8_t link_1, link_2, link_2_at_joint_2;  // 0.1 V; the first two at joint 1
+};
+
+class JointGuard {
+ public:
+  // One look at a joint, between ticks, by the supervisor's rules. The guard fills in seen.gravity_mv.
+  void look(Supervisor& supervisor, uint8_t joint, JointSeen seen, const MotionLimits& limits, const Gravity& gravity) {
+    seen.gravity_mv = static_cast<int16_t>(gravity_mv(joint, gravity) + supervisor.load_mv(joint));
+    supervisor.look_at_joint(joint, seen, limits);
+    most_mv_[joint] = most_mv(supervisor.hold(joint), seen, limits);
+  }
+  uint16_t most_mv(uint8_t joint) const { return most_mv_[joint]; }
+
+ private:
+  static int16_t gravity_mv(uint8_t joint, const Gravity& gravity);
+  static uint16_t most_mv(Hold hold, const JointSeen& seen, const MotionLimits& limits);
+
+  uint16_t most_mv_[joint_count] = {};
+};
+
+// The pitch joints carry what the cosine of the pitch says.
+inline int16_t JointGuard::gravity_mv(uint8_t joint, const Gravity& gravity) {
+  if (joint != 1 && joint != 2) return 0;
+  const auto pitch = static_cast<int16_t>(gravity.pitch_1 + gravity.pitch_2);
+  auto volts =
+      static_cast<int16_t>(signal_chain::cosine(pitch) * (joint == 1 ? gravity.link_2 : gravity.link_2_at_joint_2));
+  if (joint == 1) volts = static_cast<int16_t>(volts + signal_chain::cosine(gravity.pitch_1) * gravity.link_1);
+  return static_cast<int16_t>(volts - (volts >> 2) + (volts >> 5));  // from 1/1280 V
+}
+
+// A joint that does not move is pushed with half as much again as starts it. One that is held back gets what holds it
+// against gravity, less half of what friction holds, and nothing with gravity.
+inline uint16_t JointGuard::most_mv(Hold hold, const JointSeen& seen, const MotionLimits& limits) {
+  if (hold <= Hold::free) return UINT16_MAX;
+  const uint8_t breakaway = limits.travel.breakaway;
+  int32_t mv = seen.error < 0 ? -seen.gravity_mv : seen.gravity_mv;
+  if (hold == Hold::back) mv -= breakaway * 50;
+  else mv += static_cast<uint16_t>((breakaway != 0 ? breakaway : limits.stall) * 150u);
+  return mv <= 0 ? uint16_t{0} : static_cast<uint16_t>(mv);
+}
+
+}  // namespace supervisor
