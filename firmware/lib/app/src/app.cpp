@@ -13,7 +13,7 @@ void App::tick() { tick_.run(); }
 
 bool App::service() {
   if (tick_.move_reference()) return true;
-  if (tick_.finish()) {
+  if (tick_.look_and_prepare()) {
     budget_.renew();
     server_.schedule_sample();
   }

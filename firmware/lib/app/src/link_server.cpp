@@ -100,7 +100,7 @@ void LinkServer::serve(const wire::TelemetryRequest& request, const Tick&) {
 void LinkServer::serve(const wire::EnableRequest& request, Tick& tick) {
   // While the host leads, the leader arm cannot take over: it may be anywhere.
   if (tick.lead().on()) return refuse_not_disabled(tick);
-  if (granted(tick.enable(request.lease_ms), tick)) reply(wire::EnableReply{tick.supervisor().state()});
+  if (refuse_unless_granted(tick.enable(request.lease_ms), tick)) reply(wire::EnableReply{tick.supervisor().state()});
 }
 
 void LinkServer::serve(const wire::StopRequest&, Tick& tick) {
@@ -116,13 +116,13 @@ void LinkServer::serve(const wire::RenewRequest& request, Tick& tick) {
 }
 
 void LinkServer::serve(const wire::ClearFaultRequest&, Tick& tick) {
-  if (granted(tick.clear_fault(), tick)) reply(wire::ClearFaultReply{tick.supervisor().state()});
+  if (refuse_unless_granted(tick.clear_fault(), tick)) reply(wire::ClearFaultReply{tick.supervisor().state()});
 }
 
 void LinkServer::serve(const wire::LeadRequest& request, Tick& tick) {
   if (request.lease_ms == 0) return refuse_lead(wire::LeadRefusal::no_lease, 0);
   if (tick.supervisor().motors_on() && !tick.lead().on()) return refuse_not_disabled(tick);
-  if (!granted(tick.enable_with_host_leading(request.lease_ms), tick)) return;
+  if (!refuse_unless_granted(tick.enable_with_host_leading(request.lease_ms), tick)) return;
   wire::LeadReply out;
   out.state = tick.supervisor().state();
   out.next = tick.lead().next();
@@ -146,8 +146,8 @@ void LinkServer::serve(const wire::ClutchRequest& request, Tick& tick) {
   reply(wire::ClutchReply{tick.clutch()});
 }
 
-// When the supervisor has refused, the host is told why.
-bool LinkServer::granted(const supervisor::Reply& result, const Tick& tick) {
+// Sends the reason of a refusal. True where there was none.
+bool LinkServer::refuse_unless_granted(const supervisor::Reply& result, const Tick& tick) {
   if (result.refusal == wire::NackCode::none) return true;
   const bool unfit = tick.sets().unfit().refusal != fuzzy_pdi::Refusal::none;
   uint16_t detail = result.detail;

@@ -46,7 +46,7 @@ class LinkServer {
   void serve(const wire::LeadRequest& request, Tick& tick);
   void serve(const wire::LeadPointRequest& request, Tick& tick);
   void serve(const wire::ClutchRequest& request, Tick& tick);
-  bool granted(const supervisor::Reply& result, const Tick& tick);
+  bool refuse_unless_granted(const supervisor::Reply& result, const Tick& tick);
 
   void send_hello(uint8_t seq, const Tick& tick);
   // Inlined, its variables would take stack in all of App::service().

@@ -31,7 +31,7 @@ void show(supervisor::State state, uint16_t ms) {
 
 void Tick::begin() {
   const bool same_set = sets_.begin(controllers_);
-  finished_ = checked_ = true;
+  looked_ = checked_ = true;
   take_running_set();
   supervisor_.begin(hal::reset_cause() == hal::ResetCause::watchdog, same_set);
   hal::begin();
@@ -62,7 +62,7 @@ void Tick::run() {
   if (drivers_on_) control();
   const uint16_t age_us = hal::tick_age_us();
   if (age_us > longest_us_ && !set_touched_) longest_us_ = age_us;
-  set_touched_ = finished_ = checked_ = led_ = false;
+  set_touched_ = looked_ = checked_ = reference_moved_ = false;
   hal::watchdog_kick();
   hal::tick_end();
 }
@@ -134,8 +134,8 @@ bool Tick::move_reference() {
     lead_.end();
     leader_leads();
   }
-  if (led_) return false;
-  led_ = true;
+  if (reference_moved_) return false;
+  reference_moved_ = true;
   if (!lead_.on()) return follow_leader();
   lead_.advance(sampling_);
   return true;
@@ -143,9 +143,9 @@ bool Tick::move_reference() {
 
 bool Tick::follow_leader() { return scaling_.advance(drivers_on_, clutch_pressed(), sets_.running(), sampling_); }
 
-bool Tick::finish() {
-  if (finished_) return false;
-  finished_ = true;
+bool Tick::look_and_prepare() {
+  if (looked_) return false;
+  looked_ = true;
   look_at_probe();
   look_at_joint();
   prepare_next();
@@ -263,7 +263,7 @@ void Tick::reset_clutch() {
 __attribute__((noinline)) void Tick::leader_leads() {
   sampling_.configure(sets_.running());
   scaling_.begin(sets_.running());
-  led_ = false;
+  reference_moved_ = false;
 }
 
 void Tick::note_lost_bytes() {

@@ -18,7 +18,7 @@ namespace app {
 
 class Tick {
  public:
-  constexpr Tick() : finished_(false), checked_(false), led_(false), set_touched_(false) {}
+  constexpr Tick() : looked_(false), checked_(false), reference_moved_(false), set_touched_(false) {}
   void begin();
   void run();  // when hal::tick_pending()
 
@@ -27,7 +27,7 @@ class Tick {
   // whatever reason, the leader arm leads again before any request is taken. False when there was nothing to do.
   bool move_reference();
   // Looks at a joint and prepares the next tick, once after each. False when that has been done.
-  bool finish();
+  bool look_and_prepare();
   // Checks some of the memory that the tick works by, once after each. False when that has been done.
   bool check_memory();
   // A set is being applied, or has been since the last tick, or the motors wait for the safe set.
@@ -107,8 +107,7 @@ class Tick {
   uint8_t until_control_ = 0;  // ticks
   uint8_t short_stop_ = 0;     // ticks that are left of one
   bool drivers_on_ = false;
-  bool finished_ : 1, checked_ : 1;  // since the last tick
-  bool led_ : 1;                     // the reference has been moved on since then
+  bool looked_ : 1, checked_ : 1, reference_moved_ : 1;  // since the last tick
   bool set_touched_ : 1;  // by a step of applying it since the last tick, so the next one may be late uncounted
 };
 

@@ -42,8 +42,8 @@ void run_tick();         // calls firmware_tick(), which main.cpp defines; no ot
 uint16_t tick_age_us();  // time since the timer started this tick, resolution 4 us
 
 // For every pot the sum of four 10-bit conversions, all made during the last tick; null when there are no new sums.
-// Each conversion of 0..3 or 1020..1023 adds a rail_mark: a wire that opens in the middle of a tick shows in no sum
-// else. Release the sums before tick_end(): until then they stay as they are.
+// Each conversion of 0..3 or 1020..1023 adds a rail_mark: without it, no sum would show a wire that opens in the middle
+// of a tick. Release the sums before tick_end(): until then they stay as they are.
 const uint16_t* pot_sums();
 // The pot is probed: an input without a wire keeps what the converter's capacitor held, and reads like the pot before
 // it; one whose wire touches another's reads what both of them say. So a pot is read once more after ground, which

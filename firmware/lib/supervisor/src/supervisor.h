@@ -84,7 +84,7 @@ class Supervisor {
   Fault fault() const { return fault_; }
   uint8_t fault_where() const { return fault_where_; }
   bool motors_on() const { return state_ == State::soft_start || state_ == State::following; }
-  // Bit i: joint i is pushed gently at most; is held back.
+  // What a joint that does not move may get, and the voltage that it carries beyond the gravity that is known.
   Hold hold(uint8_t joint) const { return motion_.hold(joint); }
   int16_t load_mv(uint8_t joint) const { return motion_.load_mv(joint); }
   // Share of the supply that the controllers may use in the next tick; 32768 is all of it.
