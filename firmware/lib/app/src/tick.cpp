@@ -62,6 +62,7 @@ void Tick::run() {
   if (drivers_on_) control();
   const uint16_t age_us = hal::tick_age_us();
   if (age_us > longest_us_ && !set_touched_) longest_us_ = age_us;
+  set_was_touched_ = set_touched_;
   set_touched_ = looked_ = checked_ = reference_moved_ = false;
   hal::watchdog_kick();
   hal::tick_end();
@@ -69,7 +70,7 @@ void Tick::run() {
 
 void Tick::count(hal::TickStart start) {
   number_ += start.elapsed;
-  if (!start.late || set_touched_) return;
+  if (!start.late || set_touched_ || set_was_touched_) return;
   late_ticks_ = add_saturated(late_ticks_, start.elapsed > 1 ? static_cast<uint8_t>(start.elapsed - 1) : uint8_t{1});
 }
 

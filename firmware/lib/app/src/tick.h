@@ -18,7 +18,8 @@ namespace app {
 
 class Tick {
  public:
-  constexpr Tick() : looked_(false), checked_(false), reference_moved_(false), set_touched_(false) {}
+  constexpr Tick()
+      : looked_(false), checked_(false), reference_moved_(false), set_touched_(false), set_was_touched_(false) {}
   void begin();
   void run();  // when hal::tick_pending()
 
@@ -108,7 +109,9 @@ class Tick {
   uint8_t short_stop_ = 0;     // ticks that are left of one
   bool drivers_on_ = false;
   bool looked_ : 1, checked_ : 1, reference_moved_ : 1;  // since the last tick
-  bool set_touched_ : 1;  // by a step of applying it since the last tick, so the next one may be late uncounted
+  // By a step of applying it since the last tick, or since the one before. Such a step may delay a tick so far that the
+  // next one is late as well; neither is counted.
+  bool set_touched_ : 1, set_was_touched_ : 1;
 };
 
 }  // namespace app
