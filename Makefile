@@ -63,8 +63,8 @@ report: ready ## the paper from end to end, in build/report/report.html and .pdf
 lint: $(READY) ## ruff, mypy --strict, cppcheck, clang-tidy, generated files
 	@$(SIDE_BY_SIDE) $(LINT)
 
-check: $(READY) ## before each commit: lint, unit tests, the short way through the simulated bench; pytest without what is slow
-	@$(SIDE_BY_SIDE) $(LINT) $(UNIT_TESTS)
+check: $(READY) ## before each commit: lint, unit tests, gates, the short way through the simulated bench; pytest without what is slow
+	@$(SIDE_BY_SIDE) $(LINT) $(UNIT_TESTS) gates
 	$(PYTEST) -m 'not slow' $(ARGS)
 
 quick: $(READY) ## unit tests and quick tests, without lint: what runs on every system and Python

@@ -1,5 +1,6 @@
 """Fails when a firmware image breaks a bound: it must fit the smaller board and hold no heap and no float, its tick
-must hold no division and keep to its cycles, as must its interrupts, and its stack must not meet its variables.
+must hold no division and keep to its cycles, as must its interrupts, its stack must not meet its variables, and to
+apply a set must take no step of three ticks.
 
 python -m tools.gates
 """
@@ -8,7 +9,7 @@ from __future__ import annotations
 
 import sys
 
-from tools.gates import size, stack, tick
+from tools.gates import apply, size, stack, tick
 from tools.gates.timing import budget
 from tools.gates.timing.image import Target, built, times
 from tools.gates.timing.listing import ImageError, read_program
@@ -25,11 +26,15 @@ def check(target: Target) -> list[str]:
     if deepest.bytes > deepest.free:
         found.append(f"the stack may take {deepest.bytes} bytes, but variables leave {deepest.free}.")
     if target.is_described():
-        longest = times(target)
-        print(f"{title} tick at most {longest.tick} cycles without its interrupts")
-        found += budget.complaints(target.title, longest, budget.load())
+        bounds = times(target)
+        print(f"{title} tick at most {bounds.tick} cycles without its interrupts")
+        found += budget.complaints(target.title, bounds, budget.load())
     else:
         print(f"{title} time not bounded: facts.toml does not describe the code of this compiler")
+    applied = apply.apply_sets(target)
+    longest = max(applied.cycles, key=lambda step: applied.cycles[step])
+    print(f"{title} steps of applying a set at most {applied.cycles[longest]} cycles of {apply.LIMIT}, in `{longest}`")
+    found += apply.complaints(applied)
     return [f"{target.title}: {complaint}" for complaint in found]
 
 

@@ -84,12 +84,17 @@ class BoardWithImage:
     def status(self) -> schema.StatusReply:
         return self.ask(schema.StatusRequest())
 
-    def apply(self, changes: Mapping[str, int], fresh: bool = False) -> list[int]:
-        """Run the defaults but for these raw values; all values. On a `fresh` board all others are defaults already."""
+    def stage(self, changes: Mapping[str, int], fresh: bool = False) -> list[int]:
+        """Send the defaults but for these raw values; all values. On a `fresh` board all others are defaults already."""
         changed = {schema.PARAMETER_BY_NAME[name].index: raw for name, raw in changes.items()}
         values = [changed.get(index, raw) for index, raw in enumerate(schema.DEFAULTS)]
         for index in changed if fresh else range(len(values)):
             self.ask(schema.ParamSetRequest(index, values[index]))
+        return values
+
+    def apply(self, changes: Mapping[str, int], fresh: bool = False) -> list[int]:
+        """Stage these values, and run them."""
+        values = self.stage(changes, fresh)
         self.ask(schema.ParamApplyRequest(schema.param_crc(values)))
         return values
 

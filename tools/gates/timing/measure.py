@@ -58,7 +58,11 @@ class Session(BoardWithImage):
 
     def end_of_tick(self) -> int:
         """Runs through the next tick's function; the cycle at which it has returned."""
-        self.run_to(self.tick)
+        return self.end_of_call(self.tick)
+
+    def end_of_call(self, address: int) -> int:
+        """Runs through the next call of the function there; the cycle at which it has returned."""
+        self.run_to(address)
         level = int.from_bytes(self.board.peek(STACK_POINTER, 2), "little")
         back = self.board.peek(level + 1, self.return_address)
         return self.run_to(2 * int.from_bytes(back, "big"))
@@ -77,8 +81,8 @@ def _readings(random: np.random.Generator) -> np.ndarray:
     return np.repeat(millivolts[[0, 4]], 4) if random.random() < 0.7 else millivolts
 
 
-def _parameters(draw: Random) -> dict[str, int]:
-    """A set whose joints bend anywhere and may be far apart, and which raises no fault for that.
+def parameters(draw: Random) -> dict[str, int]:
+    """Draws a set whose joints bend anywhere and may be far apart, and which raises no fault for that.
 
     Joints that are alike are dear in the same tick.
     """
@@ -108,7 +112,7 @@ def _parameters(draw: Random) -> dict[str, int]:
 
 def _near(draw: Random, values: dict[str, int]) -> dict[str, int]:
     """The same set, some of its parameters drawn anew, for all joints together."""
-    drawn = _parameters(draw)
+    drawn = parameters(draw)
     names = sorted({key.partition(".")[2] or key for key in values})
     again = {name for name in names if draw.random.random() < 0.25}
     return values | {key: value for key, value in drawn.items() if (key.partition(".")[2] or key) in again}
@@ -119,7 +123,7 @@ def worst(target: Target, sets: int = SETS, seed: int = 5) -> dict[str, int]:
     session, draw = Session(target, seed), Random(seed)
     best: list[tuple[int, dict[str, int]]] = []
     for number in range(sets):
-        values = _near(draw, best[number % len(best)][1]) if number % 4 and best else _parameters(draw)
+        values = _near(draw, best[number % len(best)][1]) if number % 4 and best else parameters(draw)
         session.run_set(values)
         session.ask(schema.TelemetryRequest(1))
         dearest = 0
@@ -148,7 +152,7 @@ def busiest(target: Target, sets: int = SETS, seed: int = 9) -> int:
     status = b"\0" + frames.encode_frame(schema.StatusRequest.TYPE, 1, b"")
     longest = 0
     for _ in range(sets):
-        session.run_set(_parameters(draw))
+        session.run_set(parameters(draw))
         session.ask(schema.TelemetryRequest(1))
         for _ in range(TICKS_PER_SET):
             session.wait(3)
