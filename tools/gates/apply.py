@@ -1,7 +1,8 @@
 """Times the steps of applying a set on the simulated board, motors off.
 
-A step begins in the first 300 us of a tick's time (tick_budget.h). Some take longer than what is left of it and delay the
-next tick, which is not counted as late. But the main loop serves nothing else meanwhile, so no step may take three ticks.
+A step begins in the first 300 us of a tick's time (tick_budget.h). Some take longer than what is left of it and delay
+the next tick, which is not counted as late. But the main loop serves nothing else meanwhile, so no step may take three
+ticks.
 """
 
 from __future__ import annotations

@@ -20,6 +20,7 @@ REPLY_BIT = 0x80
 _TYPE = re.compile(r"(u8|i8|u16|i16|u32|i32)(?:\[(\d+)\])?")
 
 
+MAX_TABLE_BYTES = 247  # of the 256 of a bank in the EEPROM, the rest is its head and its CRC: params/store.h
 _MORE_WORDS = ("remedy", "detail", "cause")
 
 
@@ -319,9 +320,10 @@ def _check(declaration: Declaration, layout_hash: int) -> None:
     since = [1, *(group.since for group in declaration.groups), declaration.layout]
     if since != sorted(since):
         raise DeclarationError("parameters.toml: a group's `since` is below that of one before; put new groups last.")
-    if declaration.table_size > 247 or declaration.parameter_count > 255:
+    if declaration.table_size > MAX_TABLE_BYTES or declaration.parameter_count > 255:
         raise DeclarationError(
-            "parameters.toml: the table is larger than 247 bytes or 255 parameters; widen the store first."
+            f"parameters.toml: the table is larger than {MAX_TABLE_BYTES} bytes or 255 parameters; "
+            "widen the store first."
         )
     if _layout_hash(declaration) != layout_hash:
         raise DeclarationError(
