@@ -60,11 +60,11 @@ dashboard: ## the page on the simulated bench, in the browser, its files in buil
 report: ready ## the paper from end to end, in build/report/report.html and .pdf; options in ARGS, e.g. ARGS=--quick
 	@$(PYTHON) -m greywhale reproduce --out build/report $(ARGS)
 
-lint: $(READY) ## ruff, mypy --strict, cppcheck, clang-tidy, generated files
-	@$(SIDE_BY_SIDE) $(LINT)
+lint: $(READY) ## ruff, mypy --strict, cppcheck, clang-tidy, generated files; all that fails at once
+	@$(SIDE_BY_SIDE) --keep-going $(LINT)
 
 check: $(READY) ## before each commit: lint, unit tests, gates, the short way through the simulated bench; pytest without what is slow
-	@$(SIDE_BY_SIDE) $(LINT) $(UNIT_TESTS) gates
+	@$(SIDE_BY_SIDE) --keep-going $(LINT) $(UNIT_TESTS) gates
 	$(PYTEST) -m 'not slow' $(ARGS)
 
 quick: $(READY) ## unit tests and quick tests, without lint: what runs on every system and Python
@@ -121,7 +121,7 @@ build/tidy/%.ok: % $(FIRMWARE_SOURCES) .clang-tidy Makefile | $(READY)
 	@touch $@
 
 generated: $(READY)
-	$(PYTHON) -m tools.generate.link --check
+	$(PYTHON) -m tools.generate --check
 
 firmware-tests-native firmware-tests-sim: firmware-tests-%: $(READY)
 	$(PYTHON) -m tools.firmware_tests $*
@@ -141,7 +141,7 @@ attack: setup firmware ## attack everything at full size and write docs/reliabil
 	@$(PYTHON) -m tools.attack --publish $(ARGS)
 
 docs: setup ## write the generated files again (link schema, reference page, schemas), and build the site in build/site
-	$(PYTHON) -m tools.generate.link
+	$(PYTHON) -m tools.generate
 	$(PYTHON) -m tools.docs
 
 site: setup ## the page with firmware and arm inside, and the documentation: one folder for any web server, in build/try

@@ -25,9 +25,7 @@ from tools.setup import platformio, venv
 
 pytestmark = pytest.mark.slow
 NANO = next(target for target in TARGETS if target.environment == "nanoatmega328")
-PARAMETER = (
-    '{{ name = "more_{number}", type = "u16", unit = "", min = 0, max = 1, default = 0, description = "" }}'
-)
+PARAMETER = '{{ name = "more_{number}", type = "u16", unit = "", min = 0, max = 1, default = 0, description = "" }}'
 GROUP = """
 [[group]]
 name = "joint"

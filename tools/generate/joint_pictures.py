@@ -1,4 +1,4 @@
-"""Draws which way of each joint is positive, for docs/calibrate.md: `python -m tools.generate.joint_pictures`.
+"""Draws which way of each joint is positive, for docs/calibrate.md: `python -m tools.generate`.
 
 Each view turns points by the right-hand rule about the joint's own axis (docs/arm.md); a test compares the axes with
 those of the exported arm.
@@ -6,6 +6,7 @@ those of the exported arm.
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
 from html import escape
@@ -118,5 +119,12 @@ def _draw_joint(drawn: Picture, view: View, centre: Point) -> None:
     drawn.text(x, y + 5, "+", "middle", WAY)
 
 
-if __name__ == "__main__":
-    PICTURE.write_text(draw().svg(), encoding="utf-8")
+def main(arguments: list[str]) -> int:
+    """With `--check` nothing is written; 1 where the picture is stale."""
+    picture = draw().svg()
+    if arguments != ["--check"]:
+        PICTURE.write_text(picture, encoding="utf-8")
+    elif PICTURE.read_text(encoding="utf-8") != picture:
+        print(f"{PICTURE.relative_to(ROOT)} is stale; run `python -m tools.generate`.", file=sys.stderr)
+        return 1
+    return 0

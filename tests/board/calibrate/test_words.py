@@ -65,7 +65,7 @@ def test_the_simulated_arm_has_the_same_ways() -> None:
 
 
 def test_the_picture_turns_about_the_arms_own_axes_and_is_current() -> None:
-    """If not: `python -m tools.generate.joint_pictures`."""
+    """If not: `python -m tools.generate`."""
     axes = [one.attrib["xyz"] for one in ElementTree.fromstring(urdf(default_arm())).iter("axis")]
     assert [np.array(axis.split(), dtype=float).tolist() for axis in axes] == [view.axis.tolist() for view in VIEWS]
     assert PICTURE.read_text(encoding="utf-8") == draw().svg()
