@@ -1,35 +1,32 @@
-"""The attacks on EEPROMs: a share of each kind, and the odds of the CRC."""
+"""Damaged EEPROMs: the set that was saved last runs after a boot, or one before it does and the loss is told."""
 
 from __future__ import annotations
 
 import pytest
 
-from tools.attack import crc
-from tools.attack.parts import eeprom
+from tools.attack import chance
+from tools.attack.native import FAST, ROOMS_OF_SETS, Program, run_counts
+
+pytestmark = pytest.mark.slow
+PROGRAM = Program("eeprom_faults", ("eeprom_faults", "sets"), FAST, ROOMS_OF_SETS)
+SEED, DAMAGED, MIGRATED = 1, 20_000, 500
+# 1 to 8 flipped bits in a bank; 1 to 8 bytes changed, also where banks are of an older layout; a run of 2 to 300 bytes
+# erased, cleared or overwritten; the banks, or a part of them, swapped; a bank erased whole.
+DAMAGES = (*(f"bits{count}" for count in range(1, 9)), "bytes", "old", "runs", "swapped", "erased")
+MOST_MATCHES = 2 * chance.CRC_MATCH  # both banks may be damaged; an even number of flipped bits passes with 2^-15
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("kind", eeprom.TRIALS)
-def test_a_share_holds(kind: str) -> None:
-    trials = 500 if kind == "migration" else 20_000
-    (row,) = eeprom.run({"kind": kind, "seed": 1, "trials": trials})
-    assert (row.trials, row.violations) == (trials, 0)
-    assert sum(row.counts.values()) == trials
-    assert kind == "migration" or row.counts["lost and told"] > trials / 3
+@pytest.mark.parametrize("damage", DAMAGES)
+def test_a_damaged_bank_is_noticed_and_an_older_set_runs(damage: str) -> None:
+    counts = run_counts(PROGRAM, [damage, SEED, DAMAGED])
+    matches = counts.pop("collisions", 0)
+    assert set(counts) == {"trials", "newest runs", "lost and told"}
+    assert counts["lost and told"] > DAMAGED / 3
+    assert not chance.too_many(matches, MOST_MATCHES * DAMAGED)
+    if damage in {"bits1", "bits2", "bits3", "erased"}:
+        assert matches == 0, "a CRC notices any three bits"
 
 
-def test_the_odds_of_the_crc_are_those_of_all_words() -> None:
-    bits, data = 26, 10
-    words = []
-    for value in range(1 << data):
-        register = 0
-        for bit in reversed(range(data)):
-            feedback = (register >> 15 ^ value >> bit) & 1
-            register = (register << 1 & 0xFFFF) ^ (crc.POLYNOMIAL if feedback else 0)
-        words.append((value << 16 | register).bit_count())
-    assert [crc.unnoticed_patterns(bits, weight) for weight in range(9)] == [words.count(weight) for weight in range(9)]
-
-
-def test_up_to_three_flipped_bits_never_pass() -> None:
-    assert [crc.unnoticed_patterns(eeprom.SUMMED_BITS, weight) for weight in (1, 2, 3, 5, 7)] == [0] * 5
-    assert crc.unnoticed_patterns(eeprom.SUMMED_BITS, 4) > 0
+def test_sets_of_an_older_firmware_come_over_and_are_saved_whole() -> None:
+    """After the loss of the new bank, the old one runs, and that is told."""
+    assert run_counts(PROGRAM, ["migration", SEED, MIGRATED]) == {"trials": MIGRATED, "migrated": MIGRATED}

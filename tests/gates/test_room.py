@@ -49,7 +49,16 @@ def nano(tmp_path_factory: pytest.TempPathFactory) -> Target:
     declare(copy / "shared/link/parameters.toml")
     assert generate(["--root", str(copy)]) == 0
     built = copy / "build"
-    command = [venv.PYTHON, "-m", "platformio", "run", "--project-dir", copy / "firmware", "-e", NANO.environment]
+    command = [
+        str(venv.PYTHON),
+        "-m",
+        "platformio",
+        "run",
+        "--project-dir",
+        str(copy / "firmware"),
+        "-e",
+        NANO.environment,
+    ]
     surroundings = {**platformio.full_environment(), "PLATFORMIO_BUILD_DIR": str(built)}
     subprocess.run(command, env=surroundings, check=True, capture_output=True)
     return replace(NANO, built=built)

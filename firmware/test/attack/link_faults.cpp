@@ -1,11 +1,10 @@
 // A host and a board over a line that damages bytes: link_faults session SEED FAULTS RATE, the rate in faults per
-// million bytes. Or frames with so many flipped bits: link_faults flips SEED FRAMES BITS. Prints what came of it. Or
-// what a board sends, as it came: link_faults replies SEED FAULTS RATE. Writes a record for each frame: size and bytes
-// of what was sent, size and bytes of what came, and 1 if the receiver must understand it.
+// million bytes. Prints what came of it. Or what a board sends, as it came: link_faults replies SEED FAULTS RATE.
+// Writes a record for each frame: size and bytes of what was sent, size and bytes of what came, and 1 if the receiver
+// must understand it.
 #include <algorithm>
 #include <cstdio>
 #include <deque>
-#include <set>
 #include <string>
 
 #include "channel.h"
@@ -159,24 +158,6 @@ void run_sessions(Random& random, std::uint64_t faults, double rate, Counts& cou
   }
 }
 
-// Bits of a param_set as it stands on the line, but for its closing zero.
-void flip_bits(Random& random, std::uint64_t frames, int bits, Counts& counts) {
-  for (std::uint64_t i = 0; i < frames; ++i) {
-    const auto index = static_cast<std::uint16_t>(between(random, 0, params::count - 1));
-    const Frame frame = make_frame(static_cast<std::uint8_t>(random()),
-                                   wire::ParamSetRequest{index, static_cast<std::int32_t>(random())});
-    std::vector<std::uint8_t> bytes = encode(frame);
-    std::set<std::int64_t> at;
-    while (static_cast<int>(at.size()) < bits)
-      at.insert(between(random, 0, static_cast<int>(bytes.size() - 1) * 8 - 1));
-    for (const std::int64_t bit : at)
-      bytes[static_cast<std::size_t>(bit / 8)] ^= static_cast<std::uint8_t>(1 << bit % 8);
-    wire::Decoder decoder;
-    for (const std::uint8_t byte : bytes) counts["passed by chance"] += decoder.push(byte);
-  }
-  counts["frames"] += frames;
-}
-
 void put(const std::vector<std::uint8_t>& bytes) {
   std::putchar(static_cast<int>(bytes.size()));
   std::fwrite(bytes.data(), 1, bytes.size(), stdout);
@@ -204,8 +185,7 @@ int main(const std::string& what, std::uint64_t seed, std::uint64_t count, int h
   Random random(seed);
   Counts counts;
   if (what == "replies") send_replies(random, count, how * 1e-6);
-  else if (what == "session") run_sessions(random, count, how * 1e-6, counts);
-  else flip_bits(random, count, how, counts);
+  else run_sessions(random, count, how * 1e-6, counts);
   counts.print();
   return 0;
 }

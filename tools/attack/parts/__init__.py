@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tools.attack.part import Part
-from tools.attack.parts import cuts, eeprom, faults, fuzz, lies, link, soak
+from tools.attack.parts import cuts, faults, fuzz, lies, link
 
 PARTS: tuple[Part, ...] = (
     faults.PART,
@@ -11,6 +11,4 @@ PARTS: tuple[Part, ...] = (
     link.PART,
     fuzz.PART,
     cuts.PART,
-    eeprom.PART,
-    soak.PART,
 )

@@ -6,7 +6,7 @@ import subprocess
 from collections.abc import Iterator
 
 from greywhale.protocol.frames import FrameDecoder, decode_frame
-from tools.attack import crc
+from tools.attack import chance
 from tools.attack.native import FAST, Program, build, depends, run_counts
 from tools.attack.part import Part, Piece, Row, split
 
@@ -19,43 +19,30 @@ SESSIONS = {
     50_000: (8_000_000, 4_000_000),
 }
 REPLIES = {10_000: (200_000, 100_000), 50_000: (200_000, 100_000)}
-FLIPS, FLIPS_PIECE = 10_000_000, 5_000_000
-FLIPPED = range(1, 9)
-SUMMED_BITS = (1 + 1 + 6 + 2) * 8  # of a param_set: type, sequence number, payload, CRC
-LINE_BITS = SUMMED_BITS + 8  # and the code byte in front
 BROKEN = ("wrong set", "started by chance", "on after stop", "whole but not understood", "slow recovery")
 
 
-def flips_share(bits: int) -> float:
-    """How many of all frames with so many flipped bits pass, at most: those that only the CRC can notice, and those
-    whose code bytes moved so that anything may stand there."""
-    untouched = crc.unnoticed_share(SUMMED_BITS, bits, LINE_BITS)
-    return untouched + (0.0 if bits == 1 else crc.RANDOM)
-
-
 def pieces(share: float) -> list[Piece]:
-    found: list[Piece] = []
-    for what, plan in (("session", SESSIONS), ("replies", REPLIES)):
-        for rate, (faults, size) in plan.items():
-            found += split(faults, share, size, what=what, how=rate)
-    for bits in FLIPPED:
-        found += split(FLIPS, share, FLIPS_PIECE, what="flips", how=bits)
-    return found
+    return [
+        piece
+        for what, plan in (("session", SESSIONS), ("replies", REPLIES))
+        for rate, (faults, size) in plan.items()
+        for piece in split(faults, share, size, what=what, how=rate)
+    ]
 
 
 def run(piece: Piece) -> list[Row]:
     arguments = [piece["what"], piece["seed"], piece["trials"], piece["how"]]
     if piece["what"] == "replies":
         return [judge_replies(piece["how"], piece["trials"], read_replies(arguments))]
-    counts = run_counts(PROGRAM, arguments)
-    return [judge_session(piece["how"], counts) if piece["what"] == "session" else judge_flips(piece["how"], counts)]
+    return [judge_session(piece["how"], run_counts(PROGRAM, arguments))]
 
 
 def judge_session(rate: int, counts: dict[str, int]) -> Row:
     """Of the damaged pieces of the line one in 65,536 may pass. More than chance explains are violations."""
     broken = sum(counts.pop(name, 0) for name in BROKEN)
-    expected = (counts["faults"] + counts["frames hit"]) * crc.RANDOM
-    broken += crc.too_many(counts.get("passed by chance", 0), expected)
+    expected = (counts["faults"] + counts["frames hit"]) * chance.CRC_MATCH
+    broken += chance.too_many(counts.get("passed by chance", 0), expected)
     shown = {"frames hit", "applied", "passed by chance", "acted by chance"}
     return Row(
         f"board: {rate / 1e4:g} % of the bytes hit",
@@ -63,17 +50,6 @@ def judge_session(rate: int, counts: dict[str, int]) -> Row:
         broken,
         {"frames": counts["frames"]} | {name: count for name, count in counts.items() if name in shown},
         {"bytes until a frame was understood": float(counts.get("worst recovery", 0))},
-    )
-
-
-def judge_flips(bits: int, counts: dict[str, int]) -> Row:
-    passed, share = counts.get("passed by chance", 0), flips_share(bits)
-    return Row(
-        f"frames with {bits} flipped bit{'s' * (bits > 1)}",
-        counts["frames"],
-        crc.too_many(passed, share * counts["frames"]),
-        {"passed by chance": passed},
-        {"expected in a million, at most": share * 1e6},
     )
 
 
@@ -101,7 +77,7 @@ def judge_replies(rate: int, faults: int, replies: Iterator[Reply]) -> Row:
         missed += must and (not got or got[-1] != recent[-1])
         passed += sum(frame not in recent for frame in got)
         frames += 1
-    broken = missed + crc.too_many(passed, 2 * faults * crc.RANDOM)
+    broken = missed + chance.too_many(passed, 2 * faults * chance.CRC_MATCH)
     return Row(
         f"host: {rate / 1e4:g} % of the bytes hit", faults, broken, {"frames": frames, "passed by chance": passed}
     )
@@ -121,14 +97,11 @@ fault the next whole frame but one is: within 108 bytes, two of the longest fram
 
 A CRC of 16 bits lets some damage through: these are the frames that passed by chance, and some of them acted (staged a
 value that the CRC of the apply then refused, moved the reference by a wrong step, set another lease). Of damage
-without order one piece in 65,536 has the right CRC, and COBS refuses most of those as well. Of few flipped bits the
-CRC lets through what the weights of its code say (MacWilliams' identity gives them from the 65,536 words of the dual
-code): none of up to three and none of any odd number. A flipped bit in a code byte moves a zero, so two or more may
-become damage without order. The rows for frames with flipped bits, all of them `param_set`, stand beside these odds.
-More than they explain would be violations, in every row.
+without order one piece in 65,536 has the right CRC, and COBS refuses most of those as well. More than that would be
+violations, in every row.
 
 The other way, the host's decoder takes what a board sends, samples and status, over the same line.""",
-    (*depends(PROGRAM), "tools/attack/crc.py", "host/src/greywhale/protocol"),
+    (*depends(PROGRAM), "tools/attack/chance.py", "host/src/greywhale/protocol"),
     pieces,
     run,
 )
