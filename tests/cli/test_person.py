@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterator, Sequence
 import pytest
 
 from greywhale.base.errors import UserError
-from greywhale.board.calibrate import Answer
+from greywhale.board.calibrate import PersonAnswer
 from greywhale.cli.person import Terminal
 
 Typing = Callable[[bytes], None]
@@ -46,7 +46,7 @@ def test_what_was_typed_before_a_question_is_no_answer(typed: Typing) -> None:
     person.ask("Turn it.")
     assert person.answer() is None
     typed(b"\n")
-    assert person.answer() is Answer.DONE
+    assert person.answer() is PersonAnswer.DONE
     assert person.answer() is None
 
 
@@ -54,12 +54,12 @@ def test_a_scripts_lines_are_answers_whenever_they_were_written(piped: Typing) -
     piped(b"\nb\nanything\nlast")
     person = Terminal()
     assert not person.patient
-    for expected in (Answer.DONE, Answer.BACK, Answer.DONE):
+    for expected in (PersonAnswer.DONE, PersonAnswer.BACK, PersonAnswer.DONE):
         person.ask("Turn it.")
         assert person.answer() is expected
     assert person.answer() is None
     piped(b"")
-    assert person.answer() is Answer.DONE
+    assert person.answer() is PersonAnswer.DONE
     with pytest.raises(UserError, match="the input ended in the middle of the questions"):
         person.answer()
 
@@ -67,14 +67,14 @@ def test_a_scripts_lines_are_answers_whenever_they_were_written(piped: Typing) -
 @pytest.mark.parametrize(
     ("line", "answer"),
     [
-        (b"b\n", Answer.BACK),
-        (b" Back \n", Answer.BACK),
-        (b"a\n", Answer.AGAIN),
-        (b"s\n", Answer.SKIP),
-        (b"y\n", Answer.DONE),
+        (b"b\n", PersonAnswer.BACK),
+        (b" Back \n", PersonAnswer.BACK),
+        (b"a\n", PersonAnswer.AGAIN),
+        (b"s\n", PersonAnswer.SKIP),
+        (b"y\n", PersonAnswer.DONE),
     ],
 )
-def test_words_are_answers(typed: Typing, line: bytes, answer: Answer) -> None:
+def test_words_are_answers(typed: Typing, line: bytes, answer: PersonAnswer) -> None:
     person = Terminal()
     assert person.patient
     person.ask("Turn it.")

@@ -14,7 +14,7 @@ import numpy as np
 
 from greywhale.arm import ArmParameters
 from greywhale.base.types import Floats
-from greywhale.board.calibrate import Answer
+from greywhale.board.calibrate import PersonAnswer
 from greywhale.cli import calibrate as verb
 from greywhale.cli.entry import run
 from greywhale.cli.story import RunningBench
@@ -88,8 +88,8 @@ class Hands:
     def show(self, live: str) -> None:
         """It feels what it does."""
 
-    def answer(self) -> Answer | None:
-        return Answer.DONE if self._time_s() >= self._arrives_s else None
+    def answer(self) -> PersonAnswer | None:
+        return PersonAnswer.DONE if self._time_s() >= self._arrives_s else None
 
     def tell(self, what: str) -> None:
         self.said.append(what)

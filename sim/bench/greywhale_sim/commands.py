@@ -19,7 +19,7 @@ from greywhale_sim.faults import POTS
 from greywhale_sim.pins_seen import PinsSeen
 from greywhale_sim.server import Server
 
-Answer = dict[str, Any]
+CommandAnswer = dict[str, Any]
 REACHES = "reaches"
 QUIT = "quit"  # obeyed by whoever reads the commands
 FARTHEST_RAD = 6.28
@@ -36,7 +36,7 @@ _WIRINGS = {
 _LIES = {kind.name.lower(): kind for kind in arm.PotFault}
 
 
-def run(server: Server, text: str) -> Answer:
+def run(server: Server, text: str) -> CommandAnswer:
     """Carry out one command; a bad one raises UserError and changes nothing."""
     try:
         name, *words = shlex.split(text) or [""]
@@ -51,7 +51,7 @@ def run(server: Server, text: str) -> Answer:
         raise UserError(f'"{text.strip()}" is not understood; say: {name} {usage}.', 2) from None
 
 
-def status(server: Server) -> Answer:
+def status(server: Server) -> CommandAnswer:
     bench, stats = server.bench, server.board.stats()
     return {
         "time_s": round(server.bench.time_s, 6),
@@ -74,7 +74,7 @@ def status(server: Server) -> Answer:
     }
 
 
-def leader(server: Server, file: str) -> Answer:
+def leader(server: Server, file: str) -> CommandAnswer:
     """Another motion for the person: a file's, or generated `reaches`."""
     if server.bench.motors_enabled:
         raise UserError("the person takes up another motion only while the motors are off; stop them first.")
@@ -83,7 +83,7 @@ def leader(server: Server, file: str) -> Answer:
     return {"leader": file, "duration_s": motion.duration_s}
 
 
-def hand(server: Server, side: str, *words: str) -> Answer:
+def hand(server: Server, side: str, *words: str) -> CommandAnswer:
     angles, seconds = np.array([float(word) for word in words[:4]]), float(words[4]) if len(words) == 5 else 1.0
     if side not in ("leader", "follower", "both") or not 4 <= len(words) <= 5 or not 0.0 < seconds <= 60.0:
         raise ValueError
@@ -93,7 +93,7 @@ def hand(server: Server, side: str, *words: str) -> Answer:
     return {"hand": side, "arrives_s": round(server.bench.time_s + seconds, 6)}
 
 
-def pot(server: Server, side: str, joint: str, state: str) -> Answer:
+def pot(server: Server, side: str, joint: str, state: str) -> CommandAnswer:
     pots = {"leader": server.bench.leader_pots, "follower": server.bench.follower_pots}
     if side not in pots or not 0 <= int(joint) <= 3 or state not in (*_WIRINGS, *_LIES):
         raise ValueError
@@ -104,24 +104,24 @@ def pot(server: Server, side: str, joint: str, state: str) -> Answer:
     return {"pot": f"{side}_{joint}", "state": state}
 
 
-def swap(server: Server, one: str, other: str) -> Answer:
+def swap(server: Server, one: str, other: str) -> CommandAnswer:
     server.bench.pot_faults.swap(POTS.index(one), POTS.index(other))
     return {"swapped": [one, other]}
 
 
-def mistake(server: Server, words: str) -> Answer:
+def mistake(server: Server, words: str) -> CommandAnswer:
     if words == "list":
         return {"mistakes": {one.name: one.says for one in faults.FAULTS}}
     return {"staged": words, "says": faults.inject(server.bench, words)}
 
 
-def pins(server: Server) -> Answer:
+def pins(server: Server) -> CommandAnswer:
     seen, server.bench.seen = server.bench.seen, PinsSeen()
     longest = seen.longest(server.board.cycle) / CLOCK_HZ
     return {"duties": [round(duty, 5) for duty in seen.duties], "longest_on_s": round(longest, 6)}
 
 
-def motor(server: Server, joint: str, state: str) -> Answer:
+def motor(server: Server, joint: str, state: str) -> CommandAnswer:
     gains = {"connected": 1.0, "reversed": -1.0, "dead": 0.0, "weak": faults.WEAK_GAIN}
     driver = int(joint) if state in gains else int(state)
     if not 0 <= int(joint) <= 3 or not 0 <= driver <= 3:
@@ -130,26 +130,26 @@ def motor(server: Server, joint: str, state: str) -> Answer:
     return {"motor": int(joint), "state": state}
 
 
-def estop(server: Server, action: str) -> Answer:
+def estop(server: Server, action: str) -> CommandAnswer:
     if action not in ("press", "release"):
         raise ValueError
     server.bench.press_estop(action == "press")
     return {"estop_pressed": server.bench.estop_pressed}
 
 
-def clutch(server: Server, action: str) -> Answer:
+def clutch(server: Server, action: str) -> CommandAnswer:
     if action not in ("press", "release"):
         raise ValueError
     server.bench.press_clutch(action == "press")
     return {"clutch_pressed": server.bench.clutch_pressed}
 
 
-def line(server: Server, what: str, probability: str) -> Answer:
+def line(server: Server, what: str, probability: str) -> CommandAnswer:
     server.noise.set(what, float(probability))
     return {"flip": server.noise.flip, "lose": server.noise.lose}
 
 
-def power(server: Server, switch: str, writes: str = "0") -> Answer:
+def power(server: Server, switch: str, writes: str = "0") -> CommandAnswer:
     if switch not in ("on", "off") or not 0 <= int(writes) <= 100_000:
         raise ValueError
     if switch == "on":
@@ -159,7 +159,7 @@ def power(server: Server, switch: str, writes: str = "0") -> Answer:
     return {"powered": server.board.powered}
 
 
-def speed(server: Server, value: str) -> Answer:
+def speed(server: Server, value: str) -> CommandAnswer:
     rate = 1.0 if value == "max" else float(value)
     if not SLOWEST <= rate <= 1.0:
         raise ValueError
@@ -167,7 +167,7 @@ def speed(server: Server, value: str) -> Answer:
     return {"speed": value}
 
 
-def lead(server: Server, *words: str) -> Answer:
+def lead(server: Server, *words: str) -> CommandAnswer:
     angles = np.array([float(word) for word in words])
     if len(words) != 4 or not np.all(np.abs(angles) <= FARTHEST_RAD):
         raise ValueError
@@ -175,21 +175,21 @@ def lead(server: Server, *words: str) -> Answer:
     return {"lead": angles.tolist()}
 
 
-def supply(server: Server, volts: str) -> Answer:
+def supply(server: Server, volts: str) -> CommandAnswer:
     if not 0.0 <= float(volts) <= MOST_SUPPLY_V:
         raise ValueError
     server.bench.change_supply(float(volts))
     return {"supply_v": server.bench.supply_v}
 
 
-def load(server: Server, mass: str) -> Answer:
+def load(server: Server, mass: str) -> CommandAnswer:
     if not 0.0 <= float(mass) <= MOST_LOAD_KG:
         raise ValueError
     server.bench.load_tip(float(mass))
     return {"load_kg": float(mass)}
 
 
-def obstacle(server: Server, joint: str, degrees: str) -> Answer:
+def obstacle(server: Server, joint: str, degrees: str) -> CommandAnswer:
     angle = None if degrees == "none" else math.radians(float(degrees))
     if not 0 <= int(joint) <= 3 or (angle is not None and not abs(angle) <= FARTHEST_RAD):
         raise ValueError
@@ -197,18 +197,18 @@ def obstacle(server: Server, joint: str, degrees: str) -> Answer:
     return {"obstacle": int(joint), "angle": angle}
 
 
-def push(server: Server, joint: str, torque: str) -> Answer:
+def push(server: Server, joint: str, torque: str) -> CommandAnswer:
     if not 0 <= int(joint) <= 3 or not abs(float(torque)) <= MOST_PUSH_NM:
         raise ValueError
     server.bench.push(int(joint), float(torque))
     return {"push": int(joint), "torque_nm": float(torque)}
 
 
-def controls(server: Server) -> Answer:
+def controls(server: Server) -> CommandAnswer:
     """What can be changed while a bench runs, between which ends, and how it is now."""
     bench = server.bench
     low, high = (np.clip(ends, -FARTHEST_RAD, FARTHEST_RAD).tolist() for ends in stops_of(bench.plant))
-    found: Answer = {
+    found: CommandAnswer = {
         "leader": {"minimum": low, "maximum": high},
         "faults": [
             {"name": one.name, "places": [place for place in faults.WHERE[one.on] if place], "description": one.says}
@@ -223,7 +223,7 @@ def controls(server: Server) -> Answer:
     return found
 
 
-COMMANDS: dict[str, tuple[Callable[..., Answer], str]] = {
+COMMANDS: dict[str, tuple[Callable[..., CommandAnswer], str]] = {
     "status": (status, ""),
     "leader": (leader, f"FILE.csv|{REACHES}"),
     "lead": (lead, "A0 A1 A2 A3"),

@@ -163,7 +163,7 @@ class Control:
             answer = {"error": error.message}
         self._say(answer)
 
-    def _say(self, answer: commands.Answer) -> None:
+    def _say(self, answer: commands.CommandAnswer) -> None:
         print(json.dumps(answer), flush=True)
 
 
@@ -178,7 +178,7 @@ class ByHand(Control):
             print("There.", flush=True)
         super().look()
 
-    def _say(self, answer: commands.Answer) -> None:
+    def _say(self, answer: commands.CommandAnswer) -> None:
         self._arrives_s = answer.get("arrives_s", self._arrives_s)
         sentence = answer.get("error") or answer.get("says")
         print(sentence or "\n".join(f"{name}: {value}" for name, value in answer.items()), flush=True)

@@ -10,7 +10,7 @@ import pytest
 
 from greywhale.arm.parameters import JOINT_NAMES
 from greywhale.base.errors import UserError
-from greywhale.board.calibrate.person import Answer, Watch
+from greywhale.board.calibrate.person import PersonAnswer, Watch
 from greywhale.board.calibrate.walk import HELD_TICKS, TRIES, Walk
 from greywhale.board.calibrate.words import POSITIVE_WAYS, poses_asked
 from greywhale.board.pots import FULL_SCALE
@@ -22,8 +22,8 @@ TABLE = ParameterTable.defaults()
 TRACK_RAD = float(np.radians(300.0))
 COUNTS_PER_RAD = FULL_SCALE / TRACK_RAD
 SWEEP = COUNTS_PER_RAD * np.interp(np.arange(400), [0, 100, 200, 400], [0.0, 1.0, -1.0, 0.0])
-DONE, BACK, AGAIN, SKIP = Answer.DONE, Answer.BACK, Answer.AGAIN, Answer.SKIP
-Step = tuple[str, Callable[["Arms"], None], Answer]
+DONE, BACK, AGAIN, SKIP = PersonAnswer.DONE, PersonAnswer.BACK, PersonAnswer.AGAIN, PersonAnswer.SKIP
+Step = tuple[str, Callable[["Arms"], None], PersonAnswer]
 
 
 class Arms:
@@ -92,7 +92,7 @@ class Script:
     def show(self, live: str) -> None:
         self.shown.append(live)
 
-    def answer(self) -> Answer | None:
+    def answer(self) -> PersonAnswer | None:
         return None if self._arms.coming else self._answer
 
     def tell(self, what: str) -> None:

@@ -35,7 +35,7 @@ class AdaptationFacts(TypedDict):
     note: str  # why nothing more is tried; empty for nothing to say
 
 
-class Answer(AdaptationFacts):
+class AdaptAnswer(AdaptationFacts):
     port: str  # the serial port that was used
     out: str | None  # file with the controllers that were kept; null: none were
 

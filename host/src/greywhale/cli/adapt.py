@@ -38,7 +38,7 @@ MOST_SECONDS = 86_400.0
 @option("--store", is_flag=True, help="Store what was kept, without asking.")
 @overwrite_option
 @port_option
-@json_option("greywhale.adapt.result:Answer")
+@json_option("greywhale.adapt.result:AdaptAnswer")
 def command(
     model: Path,
     out: Path,
@@ -62,7 +62,7 @@ def command(
     """
     # The native simulation takes a moment to import.
     from greywhale.adapt import AdaptationRequest, adapt, store_kept
-    from greywhale.adapt.result import Answer
+    from greywhale.adapt.result import AdaptAnswer
 
     refuse_inputs(out, model)
     require_new(overwrite, out)
@@ -72,7 +72,7 @@ def command(
         outcome = adapt(request, report, warn_page)
     if outcome.improved and (store or (not as_json and _agrees(outcome))):
         outcome = store_kept(request.port, outcome)
-    answer: Answer = {"port": request.port, **outcome.as_dict(), "out": str(out) if outcome.improved else None}
+    answer: AdaptAnswer = {"port": request.port, **outcome.as_dict(), "out": str(out) if outcome.improved else None}
     show(as_json, answer, outcome.text())
 
 

@@ -24,7 +24,7 @@ from greywhale.files.outputs import require_new
 SUPPLY_V = (1.0, 60.0)
 
 
-class ImportAnswer(Lifting):
+class ArmImportAnswer(Lifting):
     written: str  # the file
     signs: PerJoint[Annotated[int, ("enum", [1, -1])]]
     offsets_rad: PerJoint[float]
@@ -45,7 +45,7 @@ command.add_command(match)
 @option("--out", "-o", type=FILE, default="arm.toml")
 @option("--supply", default=15.0, help="The motors' supply, V.")
 @overwrite_option
-@json_option(ImportAnswer)
+@json_option(ArmImportAnswer)
 def import_(urdf: Path, out: Path, supply: float, overwrite: bool, as_json: bool) -> None:
     """Read a URDF: a yaw, two parallel pitches and a roll along the last link; a chain may end earlier.
 
@@ -63,7 +63,7 @@ def import_(urdf: Path, out: Path, supply: float, overwrite: bool, as_json: bool
     show(as_json, _facts(out, found), _text(out, found))
 
 
-def _facts(out: Path, found: Imported) -> ImportAnswer:
+def _facts(out: Path, found: Imported) -> ArmImportAnswer:
     return {
         "written": str(out),
         **lifting(found.summary),

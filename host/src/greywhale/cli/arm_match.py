@@ -22,7 +22,7 @@ class Tracks(TypedDict):
     follower: PerJoint[float]
 
 
-class MatchAnswer(TypedDict):
+class ArmMatchAnswer(TypedDict):
     written: str  # the file
     track_deg: Tracks
 
@@ -32,7 +32,7 @@ class MatchAnswer(TypedDict):
 @port_option
 @option("--out", "-o", type=FILE, default="matched.toml")
 @overwrite_option
-@json_option(MatchAnswer)
+@json_option(ArmMatchAnswer)
 def match(arm: str, port: str | None, out: Path, overwrite: bool, as_json: bool) -> None:
     """Write an arm file, or one that comes with greywhale, with the potentiometers as the board is calibrated.
 
@@ -55,7 +55,7 @@ def match(arm: str, port: str | None, out: Path, overwrite: bool, as_json: bool)
         [round(float(np.degrees(pot.track)), 2) for pot in bank.joint]
         for bank in (found.leader_pots, found.follower_pots)
     )
-    answer: MatchAnswer = {"written": str(out), "track_deg": {"leader": leader, "follower": follower}}
+    answer: ArmMatchAnswer = {"written": str(out), "track_deg": {"leader": leader, "follower": follower}}
     lines = [f"{out} is written. Tracks in degrees, leader and follower:"]
     for joint, name in enumerate(JOINT_NAMES):
         pair = (found.leader_pots.joint[joint], found.follower_pots.joint[joint])

@@ -11,7 +11,7 @@ from pathlib import Path
 import click
 
 from greywhale.arm.make import Summary, assemble, summarise
-from greywhale.arm.make.answers import Answer, answers_toml, read_answers
+from greywhale.arm.make.answers import GivenAnswer, answers_toml, read_answers
 from greywhale.arm.make.explain import explain
 from greywhale.arm.make.questions import Answers, Question, collect
 from greywhale.arm.parameters import ArmParameters
@@ -23,7 +23,7 @@ from greywhale.files.model import arm_toml
 from greywhale.files.outputs import require_new
 
 
-class NewAnswer(Lifting):
+class ArmNewAnswer(Lifting):
     written: str  # the file
     left_out: list[str]  # answers that were taken as usual
 
@@ -32,7 +32,7 @@ class NewAnswer(Lifting):
 @option("--answers", type=FILE, metavar="FILE", help="TOML with the answers, for scripts.")
 @option("--out", "-o", type=FILE, default="arm.toml")
 @overwrite_option
-@json_option(NewAnswer)
+@json_option(ArmNewAnswer)
 def new(answers: Path | None, out: Path, overwrite: bool, as_json: bool) -> None:
     """Ask for lengths, masses or materials, motors' data sheets and ranges; write an arm.toml.
 
@@ -79,7 +79,7 @@ class Person:
 
     def __init__(self, out: Path) -> None:
         self._out = out
-        self._given: list[Answer] = []
+        self._given: list[GivenAnswer] = []
         self._place = 0  # of the next question among them
         self._heading = self._shown = ""
 
@@ -116,7 +116,7 @@ class Person:
 
     def ask(self, question: Question) -> float | str:
         if self._place == len(self._given):
-            self._given.append(Answer(question, self._live(question)))
+            self._given.append(GivenAnswer(question, self._live(question)))
         self._place += 1
         return self._given[self._place - 1].value
 
@@ -161,5 +161,5 @@ def _asked(question: Question) -> str:
     return f"{question.text}{', ' if question.unit.name else ''}{question.unit.name} [{usual}]"
 
 
-def _facts(out: Path, found: Summary, left_out: tuple[str, ...]) -> NewAnswer:
+def _facts(out: Path, found: Summary, left_out: tuple[str, ...]) -> ArmNewAnswer:
     return {"written": str(out), **lifting(found), "left_out": list(left_out)}

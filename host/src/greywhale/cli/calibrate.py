@@ -37,7 +37,7 @@ class MotorFacts(TypedDict):
     way_rad: float  # how far it moved
 
 
-class Answer(OnPort):
+class CalibrateAnswer(OnPort):
     backup: str  # where the parameters from before are kept
     parameter_crc: Crc
     joints: list[int]  # in use
@@ -60,7 +60,7 @@ class Answer(OnPort):
 @option("--no-motors", is_flag=True, help="Leave the motors alone; motor_sign stays as it is.")
 @option("--yes", "-y", is_flag=True, help="Store the result without asking.")
 @overwrite_option
-@json_option(Answer)
+@json_option(CalibrateAnswer)
 def command(
     port: str | None,
     in_use: str,
@@ -134,7 +134,7 @@ def _angles(option: str, text: str) -> npt.NDArray[np.float64]:
     return angles
 
 
-def _facts(port: str, result: Result, backup: Path) -> Answer:
+def _facts(port: str, result: Result, backup: Path) -> CalibrateAnswer:
     found = result.calibration
     return {
         "port": port,

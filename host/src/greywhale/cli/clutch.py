@@ -23,7 +23,7 @@ NEXT = {
 }
 
 
-class Answer(OnPort):
+class ClutchAnswer(OnPort):
     clutch: Annotated[str | None, ("enum", [*(one.key for one in schema.Clutch), None])]  # null: a session was asked
     asked: int | None  # the process that holds the port and has sent it to the board
 
@@ -31,7 +31,7 @@ class Answer(OnPort):
 @click.command("clutch")
 @click.argument("action", type=click.Choice((*CLUTCH, RESET)))
 @port_option
-@json_option(Answer)
+@json_option(ClutchAnswer)
 def command(action: str, port: str | None, as_json: bool) -> None:
     """Disengage the leader arm, engage it where it is, or reset that.
 
@@ -45,7 +45,7 @@ def command(action: str, port: str | None, as_json: bool) -> None:
     chosen = choose_port(port)
     holder = ask_for_clutch(chosen, action) if action in CLUTCH else None
     if holder is not None:
-        answer: Answer = {"port": chosen, "clutch": None, "asked": holder}
+        answer: ClutchAnswer = {"port": chosen, "clutch": None, "asked": holder}
         show(as_json, answer, f"{chosen}: {describe(holder)} has told the board to {action} the clutch.")
         return
     with Device(chosen, restart=False) as device:

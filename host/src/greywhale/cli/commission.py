@@ -40,7 +40,7 @@ from greywhale.protocol.ports import choose_port
 @option("--resume", is_flag=True, help="Go on where an interrupted commissioning in this folder ended.")
 @yes_option
 @port_option
-@json_option("greywhale.commission.result:Answer")
+@json_option("greywhale.commission.result:CommissionAnswer")
 def command(
     out: Path,
     ranges: tuple[str, ...],
@@ -64,7 +64,7 @@ def command(
     # Scipy and the native simulation take a moment to import.
     from greywhale.commission import CommissioningRequest, commission
     from greywhale.commission.page import save_page
-    from greywhale.commission.result import Answer
+    from greywhale.commission.result import CommissionAnswer
     from greywhale.identify.excite import parse_range
 
     chosen = dict(parse_range(text) for text in ranges)
@@ -79,5 +79,5 @@ def command(
         with progress() as report:
             outcome = commission(request, report)
     page = save_page(outcome, out / "report.html")
-    answer: Answer = {"port": request.port, **outcome.as_dict(), "report": str(page)}
+    answer: CommissionAnswer = {"port": request.port, **outcome.as_dict(), "report": str(page)}
     show(as_json, answer, f"{outcome.text()}\n\nWritten: {page}")

@@ -20,7 +20,7 @@ from greywhale.optimise.methods import METHODS, PEERS
 SMALL = 300_000
 
 
-class Answer(ComparisonFacts):
+class CompareAnswer(ComparisonFacts):
     files: list[str]
 
 
@@ -52,7 +52,7 @@ class Answer(ComparisonFacts):
     help="Write all runs (.csv) or a picture of the ranks (.png, .svg, .pdf); may be given more than once.",
 )
 @overwrite_option
-@json_option(Answer)
+@json_option(CompareAnswer)
 def command(
     functions: str | None,
     methods: str | None,
@@ -90,7 +90,7 @@ def command(
     for path in out:
         write_report(path, comparison)
     written = "".join(f"\nWritten: {path}" for path in out)
-    answer: Answer = {**as_dict(comparison), "files": [str(path) for path in out]}
+    answer: CompareAnswer = {**as_dict(comparison), "files": [str(path) for path in out]}
     show(as_json, answer, text(comparison) + written)
 
 

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from greywhale.dashboard.access import Access
 
 
-class Answer(TypedDict):
+class DashboardAnswer(TypedDict):
     address: str  # to open in a browser, once
     token: str  # with which a program asks
 
@@ -51,7 +51,7 @@ class Answer(TypedDict):
 @option("--browser/--no-browser", default=True, help="Open the page in the browser.")
 @option("--http-port", type=click.IntRange(0, 65535), default=0, help="Port of the page; 0 is any free one.")
 @port_option
-@json_option(Answer | Mistakes)
+@json_option(DashboardAnswer | Mistakes)
 @click.pass_context
 def command(
     context: click.Context,
@@ -84,7 +84,7 @@ def command(
         load_arm(arm)
 
     def ready(access: Access) -> None:
-        answer: Answer = {"address": access.address(), "token": access.token}
+        answer: DashboardAnswer = {"address": access.address(), "token": access.token}
         click.echo(json_of(answer) if as_json else answer["address"])
         asks = not as_json and sys.stdin.isatty()
         tell(f"greywhale: the page is there; Ctrl-C here ends it, motors off{'; Enter prints another address' * asks}.")

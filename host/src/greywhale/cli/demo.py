@@ -38,7 +38,7 @@ from greywhale.files.outputs import require_folder
     help="Controllers tried for each joint; without it, as many as `tune` tries.",
 )
 @option("--prove", is_flag=True, help="Also prove the tuned controllers on the arm, as `commission` does.")
-@json_option("greywhale.cli.story.result:Answer")
+@json_option("greywhale.cli.story.result:DemoAnswer")
 def command(
     out: Path, leader: Path | None, arm: Path | None, controller: Path | None, as_json: bool, **options: Any
 ) -> None:

@@ -17,7 +17,7 @@ SUPPLY_V = (1.0, 60.0)
 INDENT = 21  # of what is said, behind verdict and check
 
 
-class Answer(OnPort):
+class DoctorAnswer(OnPort):
     verdict: Verdict  # the gravest
     findings: list[Finding]
 
@@ -31,7 +31,7 @@ class Answer(OnPort):
     "--image", is_flag=True, help="Also read the firmware back and compare it with the shipped one; the board restarts."
 )
 @option("--hex", "hex_file", type=FILE, metavar="FILE", help="With --image: compare with this file.")
-@json_option(Answer)
+@json_option(DoctorAnswer)
 @click.pass_context
 def command(
     context: click.Context,
@@ -57,7 +57,7 @@ def command(
     with progress(brief=True) as report:
         findings = examine(chosen, params, seconds, supply, image, hex_file, report)
     verdict = worst(findings)
-    answer: Answer = {"port": chosen, "verdict": verdict, "findings": findings}
+    answer: DoctorAnswer = {"port": chosen, "verdict": verdict, "findings": findings}
     show(as_json, answer, "\n".join([*map(_line, findings), "", _summary(findings)]), hang=INDENT)
     context.exit(int(verdict is Verdict.BAD))
 

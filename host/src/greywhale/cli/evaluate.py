@@ -33,7 +33,7 @@ class LogFacts(EvaluationFacts):
     remarks: list[str]  # check, gaps and missing voltages in sentences
 
 
-class Answer(TypedDict):
+class EvaluateAnswer(TypedDict):
     logs: list[LogFacts]  # in the order given
     picture: NotRequired[str]  # with --picture
 
@@ -42,7 +42,7 @@ class Answer(TypedDict):
 @click.argument("logs", metavar="LOG...", nargs=-1, required=True, type=FILE)
 @option("--picture", type=FILE, help="Draw angles, errors and voltages (.png, .svg or .pdf).")
 @overwrite_option
-@json_option(Answer)
+@json_option(EvaluateAnswer)
 def command(logs: tuple[Path, ...], picture: Path | None, overwrite: bool, as_json: bool) -> None:
     """Measure how well the follower followed in a log.
 
@@ -79,7 +79,7 @@ def command(logs: tuple[Path, ...], picture: Path | None, overwrite: bool, as_js
         for log, evaluation, remarks in zip(read, evaluations, warnings, strict=True)
     ]
     text = "\n\n".join(map(_text, read, evaluations, warnings))
-    answer: Answer = {"logs": results}
+    answer: EvaluateAnswer = {"logs": results}
     if picture is not None:
         _draw(picture, read)
         answer["picture"] = str(picture)

@@ -13,7 +13,7 @@ from greywhale.cli.output import FILE, json_option, option, overwrite_option, sh
 from greywhale.files.outputs import require_new
 
 
-class Answer(TypedDict):
+class ExportAnswer(TypedDict):
     written: list[str]  # files
 
 
@@ -30,7 +30,7 @@ class Answer(TypedDict):
 @option("--out", "-o", required=True, type=FILE, help="The file to write.")
 @option("--joint", type=click.IntRange(0, 3), help="With --fis: this joint only, into OUT itself.")
 @overwrite_option
-@json_option(Answer)
+@json_option(ExportAnswer)
 def command(
     fis: Path | None,
     urdf: str | None,
@@ -53,7 +53,7 @@ def command(
         raise click.UsageError("--joint goes with --fis: an arm is written whole.")
     arms = (urdf, mjcf)
     written = _export_fis(fis, out, joint, overwrite) if fis is not None else [_export_arm(*arms, out, overwrite)]
-    answer: Answer = {"written": [str(path) for path in written]}
+    answer: ExportAnswer = {"written": [str(path) for path in written]}
     show(as_json, answer, "\n".join(answer["written"]))
 
 

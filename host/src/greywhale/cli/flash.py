@@ -13,7 +13,7 @@ from greywhale.cli.output import FILE, OnPort, json_option, option, port_option,
 from greywhale.protocol.ports import choose_port
 
 
-class Answer(OnPort):
+class FlashAnswer(OnPort):
     board: str  # mega2560 or nano328
     firmware: str  # version
     parameter_crc: Crc
@@ -24,7 +24,7 @@ class Answer(OnPort):
 @option("--firmware", type=FILE, help="Folder of firmware source (with platformio.ini) to build.")
 @option("--hex", "hex_file", type=FILE, help="Upload this HEX file.")
 @port_option
-@json_option(Answer)
+@json_option(FlashAnswer)
 def command(board: str | None, firmware: Path | None, hex_file: Path | None, port: str | None, as_json: bool) -> None:
     """Put the firmware onto a board.
 
@@ -37,7 +37,7 @@ def command(board: str | None, firmware: Path | None, hex_file: Path | None, por
     chosen = choose_port(port)
     with progress() as report:
         hello = flash(chosen, board, firmware, hex_file, report)
-    answer: Answer = {
+    answer: FlashAnswer = {
         "port": chosen,
         "board": hello.board.key,
         "firmware": version(hello),

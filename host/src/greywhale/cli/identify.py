@@ -19,7 +19,7 @@ from greywhale.identify import METHODS, identify
 from greywhale.identify.result import ResultFacts
 
 
-class Answer(ResultFacts):
+class IdentifyAnswer(ResultFacts):
     files: list[str]  # that were written
     notes: list[str]  # logs of which a part was used
 
@@ -54,7 +54,7 @@ class Answer(ResultFacts):
 @option("--seed", type=click.IntRange(0, MOST_SEED), default=0, help="Where all random numbers start.")
 @option("--pictures", type=FILE, help="Folder for pictures of responses and convergence.")
 @overwrite_option
-@json_option(Answer)
+@json_option(IdentifyAnswer)
 def command(
     logs: tuple[Path, ...],
     validate: tuple[Path, ...],
@@ -95,7 +95,7 @@ def command(
 
         files += draw(outcome, pictures)
     written = "\n\nWritten: " + ", ".join(str(path) for path in files)
-    answer: Answer = {**outcome.as_dict(), "files": [str(path) for path in files], "notes": notes}
+    answer: IdentifyAnswer = {**outcome.as_dict(), "files": [str(path) for path in files], "notes": notes}
     show(as_json, answer, "\n".join([*notes, outcome.text() + written]))
 
 

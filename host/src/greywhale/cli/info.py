@@ -29,7 +29,7 @@ class PotFacts(TypedDict):
     fault: Annotated[str, ("enum", ["none", "pot_low", "pot_high"])]  # the rail that it is at
 
 
-class Answer(OnPort):
+class InfoAnswer(OnPort):
     board: str  # mega2560 or nano328
     firmware: str  # version
     protocol: int  # version of the link
@@ -58,7 +58,7 @@ class Answer(OnPort):
 @option("--watch", is_flag=True, help="Show angles, errors, voltages and faults as they are, until Ctrl-C.")
 @option("--seconds", "-s", type=click.FloatRange(min=0.0), help="With --watch: end after so long.")
 @port_option
-@json_option(Answer)
+@json_option(InfoAnswer)
 def command(watch: bool, seconds: float | None, port: str | None, as_json: bool) -> None:
     """Tell a board's version, state, faults and counters, and which potentiometers are broken.
 
@@ -89,7 +89,9 @@ def _watch(port: str | None, seconds: float | None) -> None:
         watch(device, read_parameters(device), seconds)  # Ctrl-C is how it ends
 
 
-def _facts(device: Device, hello: schema.HelloReply, status: schema.StatusReply, pots: PotReadings | None) -> Answer:
+def _facts(
+    device: Device, hello: schema.HelloReply, status: schema.StatusReply, pots: PotReadings | None
+) -> InfoAnswer:
     return {
         "port": device.port,
         "board": hello.board.key,

@@ -33,20 +33,20 @@ MISSING = ("board", DEFAULTS)  # what parameters become that a file does not sta
 MOST_NAMED = 8  # parameters in a sentence
 
 
-class GetAnswer(OnPort):
+class ParamsGetAnswer(OnPort):
     parameters: dict[str, float]  # name to value, in the parameter's unit
 
 
-class SetAnswer(OnPort, UploadFacts):
+class ParamsSetAnswer(OnPort, UploadFacts):
     stored: dict[str, float]  # name to value as stored, in the parameter's unit
 
 
-class BackupAnswer(OnPort):
+class ParamsBackupAnswer(OnPort):
     file: str
     parameter_crc: Crc
 
 
-class RestoreAnswer(OnPort, UploadFacts):
+class ParamsRestoreAnswer(OnPort, UploadFacts):
     not_in_file: list[str]  # parameters that the file, as an older one, does not state
     kept: list[str]  # those of them that keep a value of the board other than the default
 
@@ -56,7 +56,7 @@ class Difference(TypedDict):
     file: float | None  # null: an older file does not state it, and the board has another value than the default
 
 
-class DiffAnswer(OnPort):
+class ParamsDiffAnswer(OnPort):
     file: str
     differences: dict[str, Difference]  # name to both values, in the parameter's unit
     not_in_file: list[str]  # parameters that the file, as an older one, does not state
@@ -73,7 +73,7 @@ def command() -> None:
 @command.command("get")
 @click.argument("names", metavar="[NAME]...", nargs=-1, shell_complete=completion.parameters)
 @port_option
-@json_option(GetAnswer)
+@json_option(ParamsGetAnswer)
 def get(names: tuple[str, ...], port: str | None, as_json: bool) -> None:
     """Show parameters; without names, all of them.
 
@@ -84,14 +84,14 @@ def get(names: tuple[str, ...], port: str | None, as_json: bool) -> None:
         table = read_parameters(device, report)
     facts = {parameter.name: physical(parameter, table[parameter.name]) for parameter in wanted}
     lines = [f"{name:<16} {value:>12g} {schema.PARAMETER_BY_NAME[name].unit}" for name, value in facts.items()]
-    answer: GetAnswer = {"port": device.port, "parameters": facts}
+    answer: ParamsGetAnswer = {"port": device.port, "parameters": facts}
     show(as_json, answer, "\n".join(line.rstrip() for line in lines))
 
 
 @command.command("set")
 @click.argument("settings", metavar="NAME=VALUE...", nargs=-1, required=True, shell_complete=completion.settings)
 @port_option
-@json_option(SetAnswer)
+@json_option(ParamsSetAnswer)
 def set_(settings: tuple[str, ...], port: str | None, as_json: bool) -> None:
     """Change parameters, all together: run them and store them.
 
@@ -106,7 +106,7 @@ def set_(settings: tuple[str, ...], port: str | None, as_json: bool) -> None:
         done = change_parameters(device, changes, report)
     stored = {name: physical(schema.PARAMETER_BY_NAME[name], raw) for name, raw in changes.items()}
     lines = [f"  {name} = {value:.9g} {schema.PARAMETER_BY_NAME[name].unit}".rstrip() for name, value in stored.items()]
-    answer: SetAnswer = {"port": device.port, **done.as_dict(), "stored": stored}
+    answer: ParamsSetAnswer = {"port": device.port, **done.as_dict(), "stored": stored}
     show(as_json, answer, "\n".join([_changed(device.port, done.changed), "The board now runs and keeps:", *lines]))
 
 
@@ -114,14 +114,14 @@ def set_(settings: tuple[str, ...], port: str | None, as_json: bool) -> None:
 @click.argument("file", type=FILE)
 @port_option
 @overwrite_option
-@json_option(BackupAnswer)
+@json_option(ParamsBackupAnswer)
 def backup(file: Path, port: str | None, overwrite: bool, as_json: bool) -> None:
     """Write all parameters of a board into a TOML file."""
     require_new(overwrite, file)
     with Device(choose_port(port)) as device, progress(brief=True) as report:
         table = read_parameters(device, report)
     parameter_file.save(file, table)
-    answer: BackupAnswer = {"port": device.port, "file": str(file), "parameter_crc": f"0x{table.crc:04x}"}
+    answer: ParamsBackupAnswer = {"port": device.port, "file": str(file), "parameter_crc": f"0x{table.crc:04x}"}
     show(as_json, answer, f"{file}: {len(table.raw)} parameters, CRC {table.crc:#06x}.")
 
 
@@ -134,7 +134,7 @@ def backup(file: Path, port: str | None, overwrite: bool, as_json: bool) -> None
     "defaults.",
 )
 @port_option
-@json_option(RestoreAnswer)
+@json_option(ParamsRestoreAnswer)
 def restore(file: Path, missing: str | None, port: str | None, as_json: bool) -> None:
     """Run and store the parameters of a backup.
 
@@ -155,7 +155,7 @@ def restore(file: Path, missing: str | None, port: str | None, as_json: bool) ->
             wanted |= {name: schema.PARAMETER_BY_NAME[name].default for name in silent}
         with progress(brief=True) as report:
             done = change_parameters(device, wanted, report, running)
-    answer: RestoreAnswer = {"port": device.port, **done.as_dict(), "not_in_file": list(silent), "kept": kept}
+    answer: ParamsRestoreAnswer = {"port": device.port, **done.as_dict(), "not_in_file": list(silent), "kept": kept}
     lines = [_changed(device.port, done.changed)]
     if kept:
         lines.append(
@@ -167,7 +167,7 @@ def restore(file: Path, missing: str | None, port: str | None, as_json: bool) ->
 @command.command("diff")
 @click.argument("file", type=FILE)
 @port_option
-@json_option(DiffAnswer)
+@json_option(ParamsDiffAnswer)
 def diff(file: Path, port: str | None, as_json: bool) -> None:
     """Show where a board differs from a backup."""
     wanted = parameter_file.load_stated(file)
@@ -190,7 +190,7 @@ def diff(file: Path, port: str | None, as_json: bool) -> None:
         lines.append(
             f"{file} is older and does not state {counted(len(silent), 'parameter')}; the others are compared."
         )
-    answer: DiffAnswer = {
+    answer: ParamsDiffAnswer = {
         "port": device.port,
         "file": str(file),
         "differences": differences,

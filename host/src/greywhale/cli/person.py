@@ -12,10 +12,16 @@ import click
 
 from greywhale.base import system
 from greywhale.base.errors import UserError, cut
-from greywhale.board.calibrate import Answer
+from greywhale.board.calibrate import PersonAnswer
 from greywhale.cli.output import tell
 
-WORDS = {"back": Answer.BACK, "again": Answer.AGAIN, "skip": Answer.SKIP, "yes": Answer.DONE, "": Answer.DONE}
+WORDS = {
+    "back": PersonAnswer.BACK,
+    "again": PersonAnswer.AGAIN,
+    "skip": PersonAnswer.SKIP,
+    "yes": PersonAnswer.DONE,
+    "": PersonAnswer.DONE,
+}
 WORDS |= {word[:1]: answer for word, answer in WORDS.items()}
 LOOK_AGAIN_S = 0.5
 NO = ("n", "no", "q", "quit")
@@ -55,7 +61,7 @@ class Terminal:
             click.echo(f"\r  {text:<{self._shown}}", nl=False, err=True)
             self._shown = len(text)
 
-    def answer(self) -> Answer | None:
+    def answer(self) -> PersonAnswer | None:
         """None before there is one."""
         line = self._line(wait=False)
         if line is None:
@@ -64,7 +70,7 @@ class Terminal:
         if word in ("q", "quit"):
             raise UserError("the calibration was ended.")
         if word in WORDS or not self.patient:
-            return WORDS.get(word, Answer.DONE)
+            return WORDS.get(word, PersonAnswer.DONE)
         self.tell(f"{cut(line.strip(), 20)!r} is no answer; press Enter when it is done, or type b, a, s or q.")
         return None
 

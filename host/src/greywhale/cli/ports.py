@@ -10,12 +10,12 @@ from greywhale.cli.output import json_option, show
 from greywhale.protocol.ports import PortFacts, find_ports
 
 
-class Answer(TypedDict):
+class PortsAnswer(TypedDict):
     ports: list[PortFacts]
 
 
 @click.command("ports")
-@json_option(Answer)
+@json_option(PortsAnswer)
 def command(as_json: bool) -> None:
     """List the serial ports and what is behind them.
 
@@ -25,5 +25,5 @@ def command(as_json: bool) -> None:
     width = max((len(port.device) for port in ports), default=0)
     lines = [f"{port.device:<{width}}  {port.description}" for port in ports]
     text = "\n".join(lines) or "No serial ports; plug a board in, or start a simulated one with `greywhale sim`."
-    answer: Answer = {"ports": [port.as_dict() for port in ports]}
+    answer: PortsAnswer = {"ports": [port.as_dict() for port in ports]}
     show(as_json, answer, text)

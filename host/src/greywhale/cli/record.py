@@ -49,7 +49,7 @@ _OF_EXCITE = {
 }
 
 
-class Answer(OnPort, RecordingFacts):
+class RecordAnswer(OnPort, RecordingFacts):
     pass
 
 
@@ -66,7 +66,7 @@ class Saved(TypedDict):
     motion: NotRequired[str]  # with --save-motion
 
 
-class ExciteAnswer(OnPort, LedRecordingFacts, Saved):
+class RecordExciteAnswer(OnPort, LedRecordingFacts, Saved):
     design: DesignFacts
 
 
@@ -105,7 +105,7 @@ class ExciteAnswer(OnPort, LedRecordingFacts, Saved):
 @overwrite_option
 @yes_option
 @port_option
-@json_option(Answer | ExciteAnswer)
+@json_option(RecordAnswer | RecordExciteAnswer)
 def command(
     out: Path,
     seconds: float | None,
@@ -157,7 +157,7 @@ def command(
                 if enable:
                     warn_page()
                 recorded = record(device, out, length, every, enable, report, disengaged)
-        answer: Answer = {"port": chosen, **recorded.as_dict()}
+        answer: RecordAnswer = {"port": chosen, **recorded.as_dict()}
         show(as_json, answer, describe(chosen, recorded))
         return
     if enable:
@@ -182,7 +182,7 @@ def command(
         with progress() as report:
             recording = record_led(device, out, designed.motion, every, report, running)
     saved: Saved = {} if save_motion is None else {"motion": str(save_motion)}
-    result: ExciteAnswer = {"port": device.port, **recording.as_dict(), "design": _facts(designed), **saved}
+    result: RecordExciteAnswer = {"port": device.port, **recording.as_dict(), "design": _facts(designed), **saved}
     show(as_json, result, f"{describe(chosen, recording)}\n{designed.text()}")
 
 

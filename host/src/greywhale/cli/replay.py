@@ -26,7 +26,7 @@ MOTIONS: dict[str, Callable[..., Trajectory]] = {"steps": steps, "multi-steps": 
 SHARE = 0.9
 
 
-class Answer(OnPort, LedRecordingFacts):
+class ReplayAnswer(OnPort, LedRecordingFacts):
     motion: str  # the file that was led
     warnings: list[str]  # of a log as the motion: that it is not as it was recorded, or has gaps
 
@@ -38,7 +38,7 @@ class Answer(OnPort, LedRecordingFacts):
 @overwrite_option
 @yes_option
 @port_option
-@json_option(Answer)
+@json_option(ReplayAnswer)
 def command(motion: Path, out: Path, every: int, overwrite: bool, yes: bool, port: str | None, as_json: bool) -> None:
     """Turn the motors on, lead the arm along the motion in FILE and record that.
 
@@ -61,7 +61,7 @@ def command(motion: Path, out: Path, every: int, overwrite: bool, yes: bool, por
         count_down()
         with progress() as report:
             recording = record_led(device, out, trajectory, every, report)
-    answer: Answer = {
+    answer: ReplayAnswer = {
         "port": device.port,
         "motion": str(motion),
         "warnings": list(trajectory.remarks),

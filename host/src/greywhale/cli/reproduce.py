@@ -15,7 +15,7 @@ from greywhale.reproduce.request import Request
 STATUSES = ("computed anew", "measured anew on the bench", "drawn from the text", "cannot be reproduced")
 
 
-class Answer(TypedDict):
+class ReproduceAnswer(TypedDict):
     request: Request
     files: list[str]  # HTML, PDF, JSON
     entries: dict[str, Annotated[str, ("enum", [*STATUSES])]]  # what became of each table and figure, by its label
@@ -27,7 +27,7 @@ class Answer(TypedDict):
 @option("--seeds", type=int, help="Runs of everything random; without it 10, with --quick 4.")
 @option("--seed", type=int, default=0, help="The first of them.")
 @workers_options()
-@json_option(Answer)
+@json_option(ReproduceAnswer)
 def command(
     out: Path, quick: bool, seeds: int | None, seed: int, workers: int | None, scheduler: str | None, as_json: bool
 ) -> None:
@@ -58,5 +58,5 @@ def command(
         write_text(out / "report.json", json.dumps(facts, indent=1, ensure_ascii=False) + "\n")
     files.append(out / "report.json")
     statuses = {entry.label: entry.status.value for entry in made.entries if entry.label}
-    answer: Answer = {"request": request, "files": [str(path) for path in files], "entries": statuses}
+    answer: ReproduceAnswer = {"request": request, "files": [str(path) for path in files], "entries": statuses}
     show(as_json, answer, "\n".join([*made.about, f"Written: {', '.join(answer['files'])}"]))

@@ -15,7 +15,7 @@ from greywhale.protocol.ports import choose_port
 from greywhale.protocol.transport import PortBusyError
 
 
-class Answer(OnPort):
+class StopAnswer(OnPort):
     state: str | None  # of the board
     restarted: NotRequired[bool]  # whether opening the port restarted the board
     ended: NotRequired[int]  # process that held the port, and ends
@@ -25,7 +25,7 @@ class Answer(OnPort):
 @click.command("stop")
 @option("--clear-fault", is_flag=True, help="Also leave the fault state, if the cause has gone.")
 @port_option
-@json_option(Answer)
+@json_option(StopAnswer)
 def command(clear_fault: bool, port: str | None, as_json: bool) -> None:
     """Stop the motors; clear a fault.
 
@@ -39,7 +39,7 @@ def command(clear_fault: bool, port: str | None, as_json: bool) -> None:
     chosen = choose_port(port)
     session = ask_to_stop(chosen, wait_for_end=clear_fault)
     if session is not None and not clear_fault:
-        answer: Answer = {"port": chosen, "state": session["state"]}
+        answer: StopAnswer = {"port": chosen, "state": session["state"]}
         holder = _tell_holder(answer, session)
         state = f", state {session['state']}" if session["state"] else ""
         show(as_json, answer, f"{chosen}: motors off{state}; {holder}.")
@@ -56,7 +56,7 @@ def command(clear_fault: bool, port: str | None, as_json: bool) -> None:
     show(as_json, answer, f"{device.port}: motors off, state {state}.{restart}")
 
 
-def _tell_holder(answer: Answer, session: dict[str, Any]) -> str:
+def _tell_holder(answer: StopAnswer, session: dict[str, Any]) -> str:
     """Write into the answer what became of the process that held the port; the same in words."""
     if "goes_on" in session:
         answer["goes_on"] = session["pid"]

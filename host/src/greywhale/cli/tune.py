@@ -29,7 +29,7 @@ class Layouts(TypedDict):
     tables: NotRequired[list[TableFacts]]  # with --tables
 
 
-class Answer(TuningFacts, Layouts):
+class TuneAnswer(TuningFacts, Layouts):
     doubts: list[str]  # about the model, with --force
     files: list[str]  # that were written
 
@@ -79,7 +79,7 @@ class Answer(TuningFacts, Layouts):
 @option("--tables", is_flag=True, help="Also print the paper's Tables 8 to 12: ours beside the printed.")
 @option("--pictures", type=FILE, help="Folder for pictures of sets, responses and convergence.")
 @overwrite_option
-@json_option(Answer)
+@json_option(TuneAnswer)
 def command(
     model_file: str,
     out: Path,
@@ -148,7 +148,7 @@ def command(
     layouts = tables_of(outcome, paper=True) if tables else ()
     texts = [summary(outcome), *(table.text() for table in layouts), "Written: " + ", ".join(map(str, files))]
     shown: Layouts = {"tables": [table.as_dict() for table in layouts]} if tables else {}
-    answer: Answer = {
+    answer: TuneAnswer = {
         **outcome.as_dict(),
         "doubts": list(model.doubts),
         "files": [str(path) for path in files],

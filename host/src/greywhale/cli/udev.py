@@ -10,17 +10,17 @@ from greywhale.board.doctor.port import RULES_FILE, udev_rules
 from greywhale.cli.output import json_option, show
 
 
-class Answer(TypedDict):
+class UdevAnswer(TypedDict):
     file: str  # where the rules belong
     rules: str
 
 
 @click.command("udev")
-@json_option(Answer)
+@json_option(UdevAnswer)
 def command(as_json: bool) -> None:
     """Print udev rules for Linux: whoever sits at the machine may open an Arduino's port, no modem software does.
 
     Install them with: greywhale udev | sudo tee /etc/udev/rules.d/60-greywhale.rules
     """
-    answer: Answer = {"file": RULES_FILE, "rules": udev_rules()}
+    answer: UdevAnswer = {"file": RULES_FILE, "rules": udev_rules()}
     show(as_json, answer, answer["rules"])

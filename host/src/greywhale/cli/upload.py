@@ -23,7 +23,7 @@ from greywhale.protocol.table import ParameterTable
 MOST_NAMED = 3  # margins in the warning
 
 
-class Answer(OnPort, UploadFacts):
+class UploadAnswer(OnPort, UploadFacts):
     controller: str  # the file
     source: str  # what the file says of its numbers
     warnings: list[str]
@@ -33,7 +33,7 @@ class Answer(OnPort, UploadFacts):
 @click.argument("controller", type=FILE, shell_complete=completion.controllers)
 @option("--yes", "-y", is_flag=True, help="Store it without a question, also where a joint may swing.")
 @port_option
-@json_option(Answer)
+@json_option(UploadAnswer)
 def command(controller: Path, yes: bool, port: str | None, as_json: bool) -> None:
     """Run and store the controllers of a controller.toml, or of one that comes with greywhale.
 
@@ -56,7 +56,7 @@ def command(controller: Path, yes: bool, port: str | None, as_json: bool) -> Non
             uploaded = change_parameters(device, checked.raw_values(), report, running)
     count = len(uploaded.changed)
     what = f"{counted(count, 'parameter')} changed" if count else "nothing had to change"
-    answer: Answer = {
+    answer: UploadAnswer = {
         "port": device.port,
         "controller": str(controller),
         "source": checked.source,

@@ -37,7 +37,7 @@ class CommissioningFacts(TypedDict):
     trials: list[ForeseenFacts]  # those from before first
 
 
-class Answer(CommissioningFacts):
+class CommissionAnswer(CommissioningFacts):
     port: str  # the serial port that was used
     report: str  # the page
 

@@ -35,7 +35,7 @@ from greywhale.files.log.driven import following_rows
 from greywhale.measure.delay import correlation_delay, onset_delay
 from greywhale.measure.following import follows
 from greywhale.measure.runs import REST_RAD, REST_S, Run, first_part, gap_free_runs, last_part, resting
-from greywhale.measure.step_response import Answer, answer, departures, worst
+from greywhale.measure.step_response import StepResponse, answer, departures, worst
 from greywhale.measure.swings import RIPPLE_S, ripple_of_record
 from greywhale.protocol.firmware import TICK_S
 from greywhale.protocol.joints import ALL, Joints
@@ -188,7 +188,7 @@ def _joint(
     error = leader - follower
     at_rest, at_end, at_begin = np.zeros((3, len(leader)), dtype=bool)
     onsets: list[float] = []
-    answers: list[Answer] = []
+    answers: list[StepResponse] = []
     for run in runs:
         led, followed, window = leader[run.slice], follower[run.slice], run.samples(REST_S)
         rest = resting(led, window, REST_RAD)

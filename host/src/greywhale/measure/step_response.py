@@ -41,7 +41,7 @@ class Departure:
 
 
 @dataclass(frozen=True)
-class Answer:
+class StepResponse:
     """How the follower answered one step; it never settled where `settling_s` is None."""
 
     overshoot_percent: float
@@ -64,7 +64,7 @@ def departures(leader: Floats, rest: Bools, period: float) -> Iterator[Departure
             yield Departure(int(end), limit, begin, side)
 
 
-def answer(leader: Floats, follower: Floats, rest: Bools, step: Departure, period: float) -> Answer | None:
+def answer(leader: Floats, follower: Floats, rest: Bools, step: Departure, period: float) -> StepResponse | None:
     """The follower's answer to a step, or None where the leader does not rest again, or too near to where it was."""
     arrived = np.flatnonzero(rest[step.end + 1 : step.limit])
     if not arrived.size:
@@ -82,13 +82,13 @@ def answer(leader: Floats, follower: Floats, rest: Bools, step: Departure, perio
     # At the end of its rest the leader already moves on, perhaps to the same side.
     beyond = np.minimum(step.side * (followed - place), step.side * (followed - led))
     never = settled == len(followed) - 1
-    return Answer(
+    return StepResponse(
         overshoot_percent=100.0 * max(0.0, float(beyond.max())) / moved,
         settling_s=None if never else max(0, settled - there) * period,
     )
 
 
-def worst(answers: Sequence[Answer]) -> tuple[float | None, float | None]:
+def worst(answers: Sequence[StepResponse]) -> tuple[float | None, float | None]:
     """The largest overshoot and the longest settling time; the latter is None where one never settled."""
     if not answers:
         return None, None

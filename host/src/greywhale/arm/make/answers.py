@@ -15,7 +15,7 @@ from greywhale.base.formats.kinds import Kind, refuse_other_kind
 TABLES = ("link", "joint")
 
 
-class Answer(NamedTuple):
+class GivenAnswer(NamedTuple):
     """What somebody said."""
 
     question: Question
@@ -30,7 +30,7 @@ def read_answers(path: Path) -> tuple[Answers, tuple[str, ...]]:
     return answers, tuple(source.left_out)
 
 
-def answers_toml(given: Sequence[Answer]) -> str:
+def answers_toml(given: Sequence[GivenAnswer]) -> str:
     plain = [(one.question.key, one.value) for one in given if one.question.table is None]
     lines = [f"{key} = {toml_text.value(value)}" for key, value in plain]
     for name in TABLES:

@@ -3,6 +3,6 @@
 from __future__ import annotations
 
 from greywhale.board.calibrate.guide import Options, Result, calibrate
-from greywhale.board.calibrate.person import Answer, Guide
+from greywhale.board.calibrate.person import Guide, PersonAnswer
 
-__all__ = ["Answer", "Guide", "Options", "Result", "calibrate"]
+__all__ = ["Guide", "Options", "PersonAnswer", "Result", "calibrate"]

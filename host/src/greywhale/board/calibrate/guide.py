@@ -15,7 +15,7 @@ from greywhale.arm.parameters import USUAL_TRACK_RAD
 from greywhale.base.errors import UserError
 from greywhale.base.types import Floats
 from greywhale.board.calibrate.motors import Motor, examine_motor, remarks
-from greywhale.board.calibrate.person import Answer, Guide, Watch
+from greywhale.board.calibrate.person import Guide, PersonAnswer, Watch
 from greywhale.board.calibrate.solve import Calibration, require_apart
 from greywhale.board.calibrate.walk import Walk
 from greywhale.board.calibrate.words import HOW_TO_ANSWER, motor_named, motors_asked, poses_asked
@@ -114,8 +114,8 @@ def _calibrate(device: Device, table: ParameterTable, before: ParameterTable, gu
     if not options.motors:
         return Result(found, before, apart)
     followers = [JOINTS + joint for joint in options.joints]
-    while (answer := watch.ask(motors_asked(table.supply_v), followers)[0]) is not Answer.DONE:
-        if answer is Answer.BACK:
+    while (answer := watch.ask(motors_asked(table.supply_v), followers)[0]) is not PersonAnswer.DONE:
+        if answer is PersonAnswer.BACK:
             found, apart = walk.go(walk.length - 1)
     return Result(found, before, apart, _motors(watch, found))
 

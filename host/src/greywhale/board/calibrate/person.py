@@ -21,7 +21,7 @@ SHOWN_EVERY = 100  # ticks between two live readings
 LONGEST_TICKS = 600_000
 
 
-class Answer(Enum):
+class PersonAnswer(Enum):
     DONE = "done"
     BACK = "the step before"
     AGAIN = "this step again"
@@ -41,7 +41,7 @@ class Guide(Protocol):
     def show(self, live: str) -> None:
         """Show what is read right now; the next call replaces it."""
 
-    def answer(self) -> Answer | None:
+    def answer(self) -> PersonAnswer | None:
         """The answer since `ask`, None before there is one. Raises UserError when none will come, or to end it all."""
 
     def tell(self, what: str) -> None:
@@ -56,7 +56,7 @@ class Watch:
     table: ParameterTable
     guide: Guide
 
-    def ask(self, what: str, pots: Sequence[int]) -> tuple[Answer, Floats]:
+    def ask(self, what: str, pots: Sequence[int]) -> tuple[PersonAnswer, Floats]:
         """The answer, and all counts (rows, 8) until then; these potentiometers are shown meanwhile."""
         self.guide.ask(what)
         samples: deque[schema.Sample] = deque(maxlen=LONGEST_TICKS)
@@ -71,7 +71,7 @@ class Watch:
                     raise UserError(f"{self.device.port}: nobody has confirmed for ten minutes; begin anew.")
         finally:
             self.device.telemetry(0)
-        return answer or Answer.DONE, counts_of(samples, self.table)
+        return answer or PersonAnswer.DONE, counts_of(samples, self.table)
 
 
 def _reading(counts: Floats, pots: Sequence[int]) -> str:

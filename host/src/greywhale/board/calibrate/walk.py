@@ -9,7 +9,7 @@ import numpy as np
 
 from greywhale.base.errors import UserError
 from greywhale.base.types import Floats
-from greywhale.board.calibrate.person import Answer, Watch
+from greywhale.board.calibrate.person import PersonAnswer, Watch
 from greywhale.board.calibrate.solve import Calibration, Pose, match, slipped, solve
 from greywhale.board.calibrate.sweep import Sweep, judge_sweep
 from greywhale.board.calibrate.words import MEND, joint_name, sweep_asked
@@ -54,24 +54,24 @@ class Walk:
     def length(self) -> int:
         return len(self._pots) + len(self._asked)
 
-    def _next(self, at: int, answer: Answer) -> int:
+    def _next(self, at: int, answer: PersonAnswer) -> int:
         match answer:
-            case Answer.BACK if at == 0:
+            case PersonAnswer.BACK if at == 0:
                 self._watch.guide.tell("This is the first step.")
-            case Answer.BACK:
+            case PersonAnswer.BACK:
                 return at - 1
-            case Answer.SKIP if at < len(self._pots):
+            case PersonAnswer.SKIP if at < len(self._pots):
                 self._pots.append(self._pots.pop(at))
-            case Answer.SKIP:
+            case PersonAnswer.SKIP:
                 self._watch.guide.tell("A pose cannot wait.")
-            case Answer.DONE:
+            case PersonAnswer.DONE:
                 return at + 1
         return at
 
-    def _sweep(self, at: int) -> Answer:
+    def _sweep(self, at: int) -> PersonAnswer:
         pot, of = self._pots[at], len(self._pots)
         answer, counts = self._watch.ask(sweep_asked(pot, at + 1, of), [pot])
-        if answer is not Answer.DONE:
+        if answer is not PersonAnswer.DONE:
             return answer
         sweep = judge_sweep(counts, pot)
         if sweep.mistakes:
@@ -81,20 +81,20 @@ class Walk:
             self._watch.guide.tell(f"All {_COUNTS[of]} potentiometers turn with their joints.")
         return answer
 
-    def _mend(self, pot: int, mistakes: str) -> Answer:
+    def _mend(self, pot: int, mistakes: str) -> PersonAnswer:
         """How to go on after a sweep with mistakes; what moves while a person mends is not judged."""
         name = upper_first(joint_name(pot))
         self._refuse(name, mistakes, mistakes)
         if not self._watch.guide.patient:
-            return Answer.AGAIN
+            return PersonAnswer.AGAIN
         answer, _ = self._watch.ask(f"{name}: {MEND}", [pot])
-        return Answer.AGAIN if answer is Answer.DONE else answer
+        return PersonAnswer.AGAIN if answer is PersonAnswer.DONE else answer
 
-    def _pose(self, number: int) -> Answer:
+    def _pose(self, number: int) -> PersonAnswer:
         """Ask for a pose; both arms must be held still."""
         angles, what = self._asked[number]
         answer, _ = self._watch.ask(what, sorted(self._pots))
-        if answer is not Answer.DONE:
+        if answer is not PersonAnswer.DONE:
             return answer
         counts = read_counts(self._watch.device, self._watch.table, HELD_TICKS)
         means = counts[: HELD_TICKS // 100 * 100].reshape(-1, 100, len(POTS)).mean(axis=1)
@@ -103,7 +103,7 @@ class Walk:
         if wandered[worst] > STILL_COUNTS:
             moved = f"{upper_first(pot_name(worst))} moved by {wandered[worst]:.0f} counts; hold both arms still."
             self._refuse(what, moved, "the arms were not held still; lay them on a support, and begin anew.")
-            return Answer.AGAIN
+            return PersonAnswer.AGAIN
         self._poses[number] = Pose(angles, counts.mean(axis=0))
         self._check(number)
         return answer

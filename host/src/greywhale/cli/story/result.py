@@ -44,7 +44,7 @@ class LearntFacts(TypedDict):
     doubts: list[str]  # about the model
 
 
-class Answer(TypedDict):
+class DemoAnswer(TypedDict):
     leader: str  # the motion
     board: str  # mega2560 or nano328
     firmware: str  # version
@@ -83,8 +83,8 @@ class DemoResult:
     pictures: tuple[Path, ...]
     wall_s: float
 
-    def as_dict(self) -> Answer:
-        facts: Answer = {
+    def as_dict(self) -> DemoAnswer:
+        facts: DemoAnswer = {
             "leader": self.leader,
             "board": self.board,
             "firmware": self.firmware,
