@@ -23,7 +23,7 @@ double mean_share(const hal::web::MotorPins& pins) {
 }  // namespace
 
 Bench::Bench(const Parameters& parameters, std::uint64_t seed)
-    : hand(Four{}),
+    : person(Four{}),
       parameters_(parameters),
       arm_(parameters.arm, seed),
       leader_pots_(parameters.leader_pots, parameters.leader_pots_supply, seed),
@@ -34,18 +34,18 @@ Bench::Bench(const Parameters& parameters, std::uint64_t seed)
 
 void Bench::run_slice() {
   drive();
-  if (hand.hold()) {
-    place(*hand.hold());
+  if (person.hold()) {
+    place(*person.hold());
   } else {
     double volts[arm::kJoints];
     std::copy(voltages_.begin(), voltages_.end(), volts);
     arm_.step(volts, kSlice);
     std::copy(std::begin(arm_.state().q), std::end(arm_.state().q), follower_.begin());
   }
-  hand.step(hal::web::drivers_on(), follower_);
+  person.step(hal::web::drivers_on(), follower_);
   if (!held_) {
     double angles[arm::kJoints], shown[arm::kJoints];
-    std::copy(hand.angles().begin(), hand.angles().end(), angles);
+    std::copy(person.angles().begin(), person.angles().end(), angles);
     leader_pots_.millivolts(angles, shown);
     std::copy(std::begin(shown), std::end(shown), millivolts_.begin());
     std::copy(follower_.begin(), follower_.end(), angles);

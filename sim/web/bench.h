@@ -8,8 +8,8 @@
 #include "arm/arm.h"
 #include "arm/pot_faults.h"
 #include "arm/potentiometer.h"
+#include "bench_person.h"
 #include "board.h"
-#include "hand.h"
 
 namespace greywhale::web {
 
@@ -27,7 +27,7 @@ class Bench {
   void run_slice();
 
   Board board;
-  Hand hand;
+  BenchPerson person;
   arm::PotFaults pot_faults;
   void set_wiring(std::size_t pot, arm::Wiring wiring);
   void let_float(std::size_t pot, bool floats);

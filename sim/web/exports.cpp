@@ -100,7 +100,7 @@ EXPORT(estop) void exported_estop(unsigned pressed) { hal::web::press_estop(pres
 EXPORT(clutch) void exported_clutch(unsigned pressed) { hal::web::press_clutch(pressed != 0); }
 
 // The leader is led to the first four numbers, rad.
-EXPORT(lead) void exported_lead() { bench->hand.lead({numbers[0], numbers[1], numbers[2], numbers[3]}); }
+EXPORT(lead) void exported_lead() { bench->person.lead({numbers[0], numbers[1], numbers[2], numbers[3]}); }
 EXPORT(hold_inputs) void exported_hold_inputs() {  // mV
   Millivolts millivolts{};
   for (std::size_t pot = 0; pot < kPots; ++pot) millivolts[pot] = numbers[pot];
@@ -131,7 +131,7 @@ EXPORT(mend) void exported_mend() { bench->mend(); }
 EXPORT(look) void exported_look() {
   show(0, bench->millivolts());
   show(8, bench->voltages());
-  show(12, bench->hand.angles());
+  show(12, bench->person.angles());
   show(16, bench->follower());
   numbers[20] = hal::web::drivers_on();
   for (std::uint8_t joint = 0; joint < arm::kJoints; ++joint) {

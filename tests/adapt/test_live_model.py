@@ -16,7 +16,7 @@ from greywhale.loop.controllers import controllers_of
 from tests.adapt.conftest import TABLE
 from tests.adapt.simulated import Work, with_gain
 from tests.support.arms import make_arm
-from tools.support.worker import grown_friction
+from tools.support.person_at_work import grown_friction
 
 pytestmark = pytest.mark.slow
 LIVE = LiveModel.of(default_arm())

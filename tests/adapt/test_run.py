@@ -29,7 +29,7 @@ from greywhale.protocol.table import ParameterTable
 from greywhale_sim.lockstep import LockStepBench
 from tests.adapt.test_decide import stiffer
 from tests.tune.models import write_model
-from tools.support.worker import working_bench
+from tools.support.person_at_work import working_bench
 
 pytestmark = pytest.mark.slow
 TABLE = ParameterTable.defaults()

@@ -9,7 +9,7 @@ import pytest
 
 from greywhale.files.trajectory import Trajectory
 from greywhale_sim.bench import SLICE_S, Bench
-from greywhale_sim.leader import LeaderPlayer
+from greywhale_sim.leader_player import LeaderPlayer
 from greywhale_sim.wiring import MEGA
 
 

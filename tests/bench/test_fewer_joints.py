@@ -15,7 +15,7 @@ from greywhale.protocol.table import ParameterTable
 from greywhale_sim import faults, serve
 from greywhale_sim.assemble import BenchOptions, build_bench
 from greywhale_sim.bench import SLICE_S, Bench
-from greywhale_sim.leader import LeaderPlayer
+from greywhale_sim.leader_player import LeaderPlayer
 from greywhale_sim.lockstep import LockStepBench, tell_joints
 from greywhale_sim.wiring import MEGA
 from tests.bench.conftest import FakeBoard, FakePlant, FakePots

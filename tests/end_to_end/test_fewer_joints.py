@@ -25,7 +25,7 @@ from greywhale.protocol.schema import Board
 from greywhale.tune.model import load_model
 from tests.support.arms import with_joints
 from tests.support.tuning import judge_nothing, shorten
-from tools.support.hands import SECOND_DEG, Hands, bench_of, mounted_anyhow, run_calibrate
+from tools.support.calibrating_person import SECOND_DEG, CalibratingPerson, bench_of, mounted_anyhow, run_calibrate
 
 JOINTS, IDLE = [0, 2], [1, 3]
 FULL = 255  # PWM steps of joint 2
@@ -71,7 +71,7 @@ def test_two_joints_on_a_nano_from_the_box_to_a_following_arm(
     options = ("--board", "nano", "--leader", str(tmp_path / "motion.csv"))
     with bench_of(with_joints((0, 2), mounted_anyhow(11)), tmp_path, *options) as bench:
         port = ("--port", bench.port)
-        done = run_calibrate(Hands(bench), tmp_path, "--joints", "0,2", "--second", SECOND)
+        done = run_calibrate(CalibratingPerson(bench), tmp_path, "--joints", "0,2", "--second", SECOND)
         assert done.code == 0, done.said
         ask(capsys, "arm", "match", "white.toml", *port, "--out", "mine.toml")
         ask(capsys, "params", "backup", "board.toml", *port)

@@ -17,7 +17,7 @@ from greywhale.protocol import schema
 from greywhale.protocol.frames import FrameDecoder, encode_frame
 from greywhale_sim.assemble import BenchOptions, build_board, wiring_of
 from greywhale_sim.bench import SLICE_CYCLES, SLICE_S, Bench
-from greywhale_sim.leader import LeaderPlayer
+from greywhale_sim.leader_player import LeaderPlayer
 from tests.support.arms import make_arm
 
 TICK_CYCLES = 16000

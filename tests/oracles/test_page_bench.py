@@ -19,7 +19,7 @@ from greywhale.protocol import schema
 from greywhale_sim import faults
 from greywhale_sim.bench import SLICE_S, Bench
 from greywhale_sim.board_supply import FULL_MV
-from greywhale_sim.leader import LeaderPlayer
+from greywhale_sim.leader_player import LeaderPlayer
 from greywhale_sim.wiring import MEGA
 from tests.bench.conftest import FakeBoard
 from tests.oracles.page_bench import PageBench

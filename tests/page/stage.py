@@ -45,7 +45,7 @@ from greywhale.protocol.schema import (
     param_crc,
 )
 from greywhale_sim.bench import SLICE_S
-from greywhale_sim.leader import LET_GO_S
+from greywhale_sim.leader_player import LET_GO_S
 from greywhale_sim.lockstep import LockStepBench
 from greywhale_sim.words import lock_step
 from tests.dashboard.browser import BoardSocket

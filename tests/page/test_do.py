@@ -22,7 +22,7 @@ from greywhale.protocol.schema import DEFAULTS, PARAMETER_BY_NAME
 from tests.page import stage as stages
 from tests.page.barriers import DARK_AND_NARROW, LIGHT_AND_WIDE, require_no_barrier
 from tests.page.stage import PATIENCE_MS, Stage
-from tools.support.hands import Hands
+from tools.support.calibrating_person import CalibratingPerson
 
 pytestmark = pytest.mark.slow
 
@@ -130,13 +130,13 @@ def test_a_search_draws_its_curve_while_it_runs_and_each_joints_at_its_end(searc
 
 def test_a_calibration_takes_answers_and_ends_where_it_is_stopped(desk: Page, stage: Stage) -> None:
     job = begin(desk, "calibrate", in_use="1", yes=True)
-    hands = Hands(stage.bench)
+    person = CalibratingPerson(stage.bench)
     said = job.get_by_label("What the verb says")
     for step in ("Sweep 1 of 2", "Sweep 2 of 2"):
         while step not in said.inner_text():
             stage.live(0.1)  # the verb listens to a board at rest
-        hands.follow(next(line for line in said.inner_text().splitlines() if line.startswith(step)))
-        while hands.answer() is None:
+        person.follow(next(line for line in said.inner_text().splitlines() if line.startswith(step)))
+        while person.answer() is None:
             stage.live(0.1)
         job.get_by_role("button", name="Answer").click()
     while "Pose 1 of 4" not in said.inner_text():

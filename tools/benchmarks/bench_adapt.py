@@ -42,7 +42,7 @@ from tools.benchmarks.figure import Figure
 from tools.benchmarks.study import repeat
 from tools.benchmarks.tuning import practised
 from tools.support.foreign_arm import MuJoCoPlant, bench_of, foreign_arm, recorded, save
-from tools.support.worker import ArmAt, Person, grown_friction, stickier, working_bench
+from tools.support.person_at_work import ArmAt, PersonAtWork, grown_friction, stickier, working_bench
 
 WORK_S = 300.0
 PERSON = int(os.environ.get("GREYWHALE_PERSON", 3))
@@ -73,7 +73,7 @@ class Case:
             found = learn(fit, checks, tables(ParameterTable.defaults()), load_arm("white_box"), Path(name))
             return found.model.read_text(encoding="utf-8"), found.tuning.after
 
-    def at_work(self, motion: Trajectory, folder: Path) -> tuple[LockStepBench, Person]:
+    def at_work(self, motion: Trajectory, folder: Path) -> tuple[LockStepBench, PersonAtWork]:
         """A bench, and who works there."""
         return working_bench(motion, self.arm_at)
 
@@ -104,7 +104,7 @@ class ForeignCase(Case):
             found = learn(fit, checks, tables(base), white, Path(name))
             return found.model.read_text(encoding="utf-8"), found.tuning.after
 
-    def at_work(self, motion: Trajectory, folder: Path) -> tuple[LockStepBench, Person]:
+    def at_work(self, motion: Trajectory, folder: Path) -> tuple[LockStepBench, PersonAtWork]:
         """See Case."""
         arm = foreign_arm(FOREIGN)
         options = BenchOptions(arm=save(arm, folder / "foreign.toml"))

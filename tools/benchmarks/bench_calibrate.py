@@ -25,7 +25,7 @@ from greywhale.measure import evaluate
 from greywhale_sim.faults import BY_NAME, FAULTS, WHERE
 from tools.benchmarks.figure import Figure, at_most
 from tools.benchmarks.study import repeat
-from tools.support.hands import SECOND_DEG, Hands, bench_of, mounted_anyhow, run_calibrate
+from tools.support.calibrating_person import SECOND_DEG, CalibratingPerson, bench_of, mounted_anyhow, run_calibrate
 
 ASSEMBLIES = 20
 WORKERS = 2
@@ -45,7 +45,7 @@ def assembled(seed: int) -> float:
     """The error of a random assembly after `greywhale calibrate`."""
     with tempfile.TemporaryDirectory() as name, bench_of(mounted_anyhow(seed), Path(name)) as bench:
         bench.command(f"motor {seed % 4} reversed")
-        done = run_calibrate(Hands(bench), Path(name), *SECOND)
+        done = run_calibrate(CalibratingPerson(bench), Path(name), *SECOND)
         return error_of(bench, Path(name)) if done.code == 0 else np.inf
 
 
@@ -61,7 +61,7 @@ def is_named(seed: int, name: str) -> bool:
     with tempfile.TemporaryDirectory() as folder, bench_of(arm, Path(folder)) as bench:
         bench.command(f"mistake {name}" + (f":{places[number]}" if places[number] else ""))
         if fault.verb == "calibrate":
-            done = run_calibrate(Hands(bench), Path(folder), *SECOND)
+            done = run_calibrate(CalibratingPerson(bench), Path(folder), *SECOND)
             code, told = done.code, done.said + done.printed
         else:
             bench.command("hand both 0.1 -0.6 0.7 0.4")

@@ -18,7 +18,7 @@ from greywhale_sim import eeprom_file
 from greywhale_sim.bench import SLICE_S, Bench, Plant
 from greywhale_sim.drivers import CHIPS, Chip
 from greywhale_sim.faults import inject
-from greywhale_sim.leader import LeaderPlayer
+from greywhale_sim.leader_player import LeaderPlayer
 from greywhale_sim.wiring import BOARDS, Wiring
 
 BUILDS = Path(__file__).resolve().parents[3] / "firmware" / ".pio" / "build"

@@ -21,7 +21,7 @@ from greywhale.base.types import Floats
 from greywhale.protocol.joints import ALL, Joints
 from greywhale_sim.board_supply import SharedSupply
 from greywhale_sim.drivers import CHIPS, OPEN, Bridge, Chip, Pins, mean_volts
-from greywhale_sim.leader import LeaderPlayer
+from greywhale_sim.leader_player import LeaderPlayer
 from greywhale_sim.pins_seen import PinsSeen
 from greywhale_sim.wiring import Pin, Wiring
 

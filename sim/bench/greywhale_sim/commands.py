@@ -13,7 +13,7 @@ from greywhale import arm
 from greywhale.base.errors import UserError
 from greywhale.files.leader import load_leader
 from greywhale.loop import human_reaches
-from greywhale_sim import faults, hands
+from greywhale_sim import faults, person_commands
 from greywhale_sim.bench import CLOCK_HZ, stops_of
 from greywhale_sim.faults import POTS
 from greywhale_sim.pins_seen import PinsSeen
@@ -228,9 +228,9 @@ COMMANDS: dict[str, tuple[Callable[..., CommandAnswer], str]] = {
     "leader": (leader, f"FILE.csv|{REACHES}"),
     "lead": (lead, "A0 A1 A2 A3"),
     "hand": (hand, "leader|follower|both A0 A1 A2 A3 [SECONDS]"),
-    "turn": (hands.turn, "leader|follower 0..3 [SECONDS]"),
-    "hold": (hands.hold, "DEGREES, once or four times"),
-    "hang": (hands.hang, ""),
+    "turn": (person_commands.turn, "leader|follower 0..3 [SECONDS]"),
+    "hold": (person_commands.hold, "DEGREES, once or four times"),
+    "hang": (person_commands.hang, ""),
     "pot": (pot, f"leader|follower 0..3 {'|'.join((*_WIRINGS, *_LIES))}"),
     "swap": (swap, "POT POT"),
     "mistake": (mistake, "NAME[:PLACE]|none|list"),
@@ -240,7 +240,7 @@ COMMANDS: dict[str, tuple[Callable[..., CommandAnswer], str]] = {
     "clutch": (clutch, "press|release"),
     "line": (line, "flip|lose PROBABILITY"),
     "power": (power, "on|off [WRITES]"),
-    "help": (hands.explain, ""),
+    "help": (person_commands.explain, ""),
     "supply": (supply, "VOLTS"),
     "load": (load, "KG"),
     "obstacle": (obstacle, "0..3 DEGREES|none"),

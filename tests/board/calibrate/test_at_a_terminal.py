@@ -27,7 +27,7 @@ from greywhale.cli import calibrate as verb
 from greywhale.cli.entry import INTERRUPTED, run
 from greywhale.cli.story import BenchProcess
 from greywhale.protocol.table import ParameterTable
-from tools.support.hands import Hands
+from tools.support.calibrating_person import CalibratingPerson
 
 pytestmark = pytest.mark.slow
 
@@ -81,23 +81,23 @@ class Session:
         return ""
 
 
-def go_to_the_pulses(session: Session, hands: Hands) -> None:
+def go_to_the_pulses(session: Session, person: CalibratingPerson) -> None:
     for sweep, side in enumerate(("leader", "follower"), 1):
         session.until(f"Sweep {sweep} of 2: {side} joint 0, base yaw.")
-        hands.do(f"turn {side} 0 0.5")
+        person.do(f"turn {side} 0 0.5")
         session.enter()
     for pose, degrees in enumerate((0, 35, 0, -20), 1):
         session.until(f"Pose {pose} of 4")
-        hands.do(f"hold {degrees}")
+        person.do(f"hold {degrees}")
         session.enter()
     session.until("Each motor now gets")
-    hands.do("hang")
+    person.do("hang")
     session.enter()
     session.until("Motor 1 of 1, joint 0, base yaw: pulses of 1.5 V")
 
 
 def test_mistakes_and_early_keys_cost_nothing_and_only_a_yes_stores(bench: BenchProcess, tmp_path: Path) -> None:
-    hands = Hands(bench)
+    person = CalibratingPerson(bench)
     with Session(bench.port, tmp_path) as session:
         session.until("Sweep 1 of 2: leader joint 0, base yaw.")
         session.enter()
@@ -107,7 +107,7 @@ def test_mistakes_and_early_keys_cost_nothing_and_only_a_yes_stores(bench: Bench
         session.until("Sweep 1 of 2")
         session.enter("back")
         session.until("This is the first step.")
-        go_to_the_pulses(session, hands)
+        go_to_the_pulses(session, person)
         session.enter()
         session.enter("yes")
         assert "limits, degrees" in session.until("Store this? [yes or no]"), "the result is shown before the question"
@@ -125,7 +125,7 @@ def test_who_interrupts_a_pulse_leaves_the_board_as_it_was(bench: BenchProcess, 
         before = device.hello.param_crc
     writes = bench.command("status")["eeprom_writes"]
     with Session(bench.port, tmp_path) as session:
-        go_to_the_pulses(session, Hands(bench))
+        go_to_the_pulses(session, CalibratingPerson(bench))
         session.process.send_signal(signal.SIGINT)
         assert session.end().endswith("greywhale: interrupted. Nothing was stored.")
         assert session.process.wait() == INTERRUPTED

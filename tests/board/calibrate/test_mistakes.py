@@ -12,7 +12,7 @@ from greywhale.board.device import Device
 from greywhale.cli.entry import run
 from greywhale.cli.story import RunningBench
 from greywhale_sim.faults import FAULTS, USUAL, WHERE, Fault
-from tools.support.hands import SECOND_DEG, quick_hands, run_calibrate
+from tools.support.calibrating_person import SECOND_DEG, quick_person, run_calibrate
 
 pytestmark = pytest.mark.slow
 SECOND = ("--second", ",".join(f"{angle:g}" for angle in SECOND_DEG))
@@ -27,15 +27,15 @@ def test_calibrate_names_it_and_no_motor_gets_more_than_a_pulse(
     bench: RunningBench, tmp_path: Path, fault: Fault
 ) -> None:
     place, tried = USUAL[fault.on], "1,2" if fault.name in BESIDE_ANOTHER else TRIED[fault.on]
-    hands = quick_hands(bench)
-    hands.bring("both", SECOND_DEG * 0.0, 0.3)
+    person = quick_person(bench)
+    person.bring("both", SECOND_DEG * 0.0, 0.3)
     with Device(bench.port, restart=False) as device:
         before = device.hello.param_crc
     writes = bench.command("status")["eeprom_writes"]
     bench.command("pins")
     bench.command(f"mistake {fault.name}")
     try:
-        done = run_calibrate(hands, tmp_path, *SECOND, "--joints", tried)
+        done = run_calibrate(person, tmp_path, *SECOND, "--joints", tried)
         seen = bench.command("pins")
         if done.code != 0:
             assert bench.command("status")["eeprom_writes"] == writes, "what is refused is not stored"

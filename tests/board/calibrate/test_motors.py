@@ -17,7 +17,7 @@ from greywhale.board.device import Device
 from greywhale.board.upload import read_parameters
 from greywhale.files.arm import default_arm
 from greywhale.protocol.table import ParameterTable
-from tools.support.hands import bench_of
+from tools.support.calibrating_person import bench_of
 
 pytestmark = pytest.mark.slow
 

@@ -15,7 +15,7 @@ from greywhale.board.upload import read_parameters, upload_set
 from greywhale.cli.story import RunningBench
 from greywhale.protocol.firmware import ANGLE_LSB
 from tools.docs.schemas import schemas
-from tools.support.hands import SECOND_DEG, bench_of, mounted_anyhow, quick_hands, run_calibrate
+from tools.support.calibrating_person import SECOND_DEG, bench_of, mounted_anyhow, quick_person, run_calibrate
 
 pytestmark = pytest.mark.slow
 SECOND = ("--second", ",".join(f"{angle:g}" for angle in SECOND_DEG))
@@ -25,7 +25,7 @@ HALF = 32  # raw, of a ratio
 
 def shown(bench: RunningBench, degrees: np.ndarray) -> np.ndarray:
     """The eight angles (rad) that the board reads while both arms are held there."""
-    quick_hands(bench).bring("both", degrees, 0.2)
+    quick_person(bench).bring("both", degrees, 0.2)
     with Device(bench.port, restart=False) as device:
         received = stream(device, 1)
         samples = [next(received).sample for _ in range(600)][-300:]
@@ -41,7 +41,7 @@ def test_arms_mounted_anyhow_show_true_angles_after_two_known_poses(tmp_path: Pa
             idle = {f"{side}{joint}.scale": 0 for side in ("leader", "follower") for joint in (1, 3)}
             upload_set(device, read_parameters(device).with_raw(idle | {"joint2.ratio": HALF}))
         bench.command("motor 1 reversed")
-        done = run_calibrate(quick_hands(bench), tmp_path, *SECOND)
+        done = run_calibrate(quick_person(bench), tmp_path, *SECOND)
         assert done.code == 0, done.said
         assert not bench.command("status")["motors_enabled"]
         assert shown(bench, POSE) == pytest.approx(np.tile(np.radians(POSE), 2), abs=0.004)

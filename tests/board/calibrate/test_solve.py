@@ -18,7 +18,7 @@ from greywhale.protocol import schema
 from greywhale.protocol.firmware import ANGLE_LSB
 from greywhale.protocol.table import ParameterTable
 from tests.support.arms import with_joints
-from tools.support.hands import mounted_anyhow
+from tools.support.calibrating_person import mounted_anyhow
 
 ENDS = np.array([-1.0, 1.2])
 FIRST = np.zeros(4)

@@ -19,8 +19,8 @@ from greywhale.files import controller, parameter_file
 from greywhale.files.log import read_log
 from greywhale.files.paper_tables import paper_table
 from greywhale.protocol.table import ParameterTable
-from greywhale_sim.hands import ENDS_DEG
 from greywhale_sim.lockstep import LockStepBench
+from greywhale_sim.person_commands import ENDS_DEG
 from greywhale_sim.words import lock_step
 from tests.board.flash.hex_files import hex_text
 from tests.files.older_parameters import write_older

@@ -5,7 +5,7 @@
 import "../page.css";
 import { fragmentOf, stateOf, type PageState } from "./link_to_state";
 import { ArmView } from "../views/arm3d/view";
-import { LeaderHand } from "../views/bench/hand";
+import { LeaderControl } from "../views/bench/leader_control";
 import { BenchView } from "../views/bench/view";
 import { CalibrateView } from "../views/calibrate/view";
 import { ConnectView } from "../views/connect/view";
@@ -82,16 +82,16 @@ function offerOthers(shell: Shell, docs: string | null): void {
 async function showBench({ code, data, worker, tuner, docs }: Parts): Promise<void> {
   const board = new PageBoard(worker, code, data, browserStore);
   const session = new Session(board);
-  const hand = new LeaderHand(board, session);
+  const leaderControl = new LeaderControl(board, session);
   const arm = new ArmView(session, { arm: async () => data.description });
-  arm.leadBy(hand);
+  arm.leadBy(leaderControl);
   const controller = new ControllerView(session, null, new PageTuner(tuner));
-  const cards = new TryCards(session, board, hand, docs, () => {
+  const cards = new TryCards(session, board, leaderControl, docs, () => {
     shell.show(controller);
     document.getElementById("view")!.focus(); // the button is gone
   });
   const views = [
-    beside(arm, cards), new LiveView(session), controller, new ParametersView(session), new BenchView(session, board, hand, null),
+    beside(arm, cards), new LiveView(session), controller, new ParametersView(session), new BenchView(session, board, leaderControl, null),
   ];
   let state: PageState | null = null;
   let problem = "";

@@ -2,7 +2,7 @@
 
 import "../page.css";
 import { ArmView } from "../views/arm3d/view";
-import { LeaderHand } from "../views/bench/hand";
+import { LeaderControl } from "../views/bench/leader_control";
 import { BenchView } from "../views/bench/view";
 import { ControllerView } from "../views/controller/view";
 import { Countdown } from "../views/verbs/countdown";
@@ -41,8 +41,8 @@ function addHost(shell: Shell, session: Session, host: Services): void {
   }
   void session.attempt(async () => {
     if (!(await host.state()).sim) return;
-    const hand = new LeaderHand(host.bench, session);
-    arm.leadBy(hand);
-    shell.add(new BenchView(session, host.bench, hand, host));
+    const leaderControl = new LeaderControl(host.bench, session);
+    arm.leadBy(leaderControl);
+    shell.add(new BenchView(session, host.bench, leaderControl, host));
   });
 }

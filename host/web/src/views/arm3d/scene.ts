@@ -8,7 +8,7 @@ import {
 } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import URDFLoader, { type URDFRobot } from "urdf-loader";
-import type { LeaderHand } from "../bench/hand";
+import type { LeaderControl } from "../bench/leader_control";
 import type { ArmDescription } from "../../session/services";
 import type { Colours } from "../../parts/theme";
 import { finished, pause } from "./graphics";
@@ -152,9 +152,9 @@ export class ArmScene {
     this.moved = true;
   }
 
-  /** Lets a hand drag the links of both arms; where none is hit, the view turns. */
-  leadBy(hand: LeaderHand | null): void {
-    if (!hand) return;
+  /** Lets a person drag the links of both arms; where none is hit, the view turns. */
+  leadBy(leaderControl: LeaderControl | null): void {
+    if (!leaderControl) return;
     const canvas = this.renderer.domElement;
     let joint: number | null = null;
     let [x, y] = [0, 0];
@@ -169,7 +169,7 @@ export class ArmScene {
       const { min, max } = this.arm.joints[joint]!;
       const moved = ACROSS.has(joint) ? event.clientX - x : y - event.clientY;
       [x, y] = [event.clientX, event.clientY];
-      hand.take(joint, Math.max(min, Math.min(max, hand.angles[joint]! + DRAG_RAD * moved)));
+      leaderControl.take(joint, Math.max(min, Math.min(max, leaderControl.angles[joint]! + DRAG_RAD * moved)));
     });
     canvas.addEventListener("pointerup", () => {
       joint = null;

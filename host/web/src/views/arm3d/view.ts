@@ -3,7 +3,7 @@
 import { button, el, setText } from "../../parts/dom";
 import { sentenceOf } from "../../parts/sentence";
 import { colours, themeChanged } from "../../parts/theme";
-import type { LeaderHand } from "../bench/hand";
+import type { LeaderControl } from "../bench/leader_control";
 import type { View } from "../view";
 import type { Services } from "../../session/services";
 import { upperFirst } from "../../link/refusal";
@@ -20,7 +20,7 @@ export class ArmView implements View {
   private readonly canvas = el("canvas", { attrs: { role: "img", "aria-label": "The arm: follower solid, leader as a ghost" }, hidden: true });
   private readonly words = el("p", { class: "quiet" }, "Loading the arm.");
   private scene: ArmScene | null = null;
-  private hand: LeaderHand | null = null;
+  private leaderControl: LeaderControl | null = null;
   private loading = false;
 
   constructor(private readonly session: Session, private readonly host: Pick<Services, "arm">) {
@@ -33,9 +33,9 @@ export class ArmView implements View {
   }
 
   /** From now on the leader's joints can be dragged. */
-  leadBy(hand: LeaderHand): void {
-    this.hand = hand;
-    this.scene?.leadBy(hand);
+  leadBy(leaderControl: LeaderControl): void {
+    this.leaderControl = leaderControl;
+    this.scene?.leadBy(leaderControl);
   }
 
   enter(): void {
@@ -49,7 +49,7 @@ export class ArmView implements View {
     const [{ ArmScene }, arm] = await Promise.all([import("./scene"), this.host.arm()]);
     const scene = this.scene = await ArmScene.on(this.canvas, arm);
     scene.paint(colours());
-    scene.leadBy(this.hand);
+    scene.leadBy(this.leaderControl);
     this.canvas.addEventListener("webglcontextlost", () => {
       this.canvas.hidden = true;
       setText(this.words, "The browser has taken the graphics of this view away; it gives them back, or reload the page. All other views go on.");
@@ -65,7 +65,7 @@ export class ArmView implements View {
     if (scene.lost) return;
     this.canvas.hidden = false;
     this.resize();
-    setText(this.words, `${name}: solid is the follower, the ghost the leader; rings grow with the voltage, arcs end at the stops, red when one is reached.${this.hand ? " Drag a link to lead." : ""}`);
+    setText(this.words, `${name}: solid is the follower, the ghost the leader; rings grow with the voltage, arcs end at the stops, red when one is reached.${this.leaderControl ? " Drag a link to lead." : ""}`);
   }
 
   private resize(): void {

@@ -2,7 +2,7 @@
 
 import { button, el, select, setText, svg } from "../../parts/dom";
 import { JOINT_NAMES, JOINTS } from "../../session/samples";
-import type { LeaderHand } from "./hand";
+import type { LeaderControl } from "./leader_control";
 import { angleAt, pointed, shareOf, type Limits } from "./limits";
 import { Stroke } from "./stroke";
 
@@ -24,7 +24,7 @@ export class DrawnMotion {
   private durationS = DURATIONS_S[1]!;
   private begunMs: number | null = null;
 
-  constructor(private readonly hand: LeaderHand, private readonly limits: Limits) {
+  constructor(private readonly leaderControl: LeaderControl, private readonly limits: Limits) {
     const joint = select("Joint to draw", JOINT_NAMES.map((name, place) => [String(place), `${place} ${name}`] as const),
       (chosen) => { this.joint = Number(chosen); });
     const duration = select("Duration", DURATIONS_S.map((s) => [String(s), `${s} s`] as const),
@@ -82,7 +82,7 @@ export class DrawnMotion {
     if (this.begunMs === null) return;
     this.strokes.forEach((stroke, joint) => {
       const angle = stroke.at(share);
-      if (angle !== null) this.hand.take(joint, angle);
+      if (angle !== null) this.leaderControl.take(joint, angle);
     });
     if (share >= 1) this.toggle();
   }

@@ -2,7 +2,7 @@
 
 import { el, setText } from "../../parts/dom";
 import { JOINT_NAMES, type Samples } from "../../session/samples";
-import type { LeaderHand } from "./hand";
+import type { LeaderControl } from "./leader_control";
 import { angleAt, pointed, shareOf, type Limits } from "./limits";
 
 const PADS: readonly (readonly [across: number, up: number])[] = [[0, 1], [3, 2]];
@@ -13,11 +13,11 @@ export class Lead {
   private readonly words: HTMLElement[] = [];
   private readonly pads: { pad: HTMLElement; knob: HTMLElement; follower: HTMLElement }[] = [];
 
-  constructor(private readonly hand: LeaderHand, private readonly samples: Samples, private readonly limits: Limits) {
+  constructor(private readonly leaderControl: LeaderControl, private readonly samples: Samples, private readonly limits: Limits) {
     const rows = JOINT_NAMES.map((name, joint) => {
       const slider = el("input", { type: "range", attrs: {
         min: String(limits.minimum[joint]), max: String(limits.maximum[joint]), step: "0.01", "aria-label": `Leader, ${name}, rad`,
-      }, on: { input: () => hand.take(joint, Number(slider.value)) } });
+      }, on: { input: () => leaderControl.take(joint, Number(slider.value)) } });
       const words = el("span", { class: "number" }, "0.00");
       this.sliders.push(slider);
       this.words.push(words);
@@ -34,7 +34,7 @@ export class Lead {
     const drag = (event: PointerEvent): void => {
       pointed(pad, event).forEach((share, axis) => {
         const joint = axis ? up : across;
-        this.hand.take(joint, angleAt(this.limits, joint, share));
+        this.leaderControl.take(joint, angleAt(this.limits, joint, share));
       });
     };
     pad.addEventListener("pointerdown", (event) => {
@@ -49,11 +49,11 @@ export class Lead {
   }
 
   draw(): void {
-    const shown = this.hand.angles;
+    const shown = this.leaderControl.angles;
     const follower = this.samples.newest("follower");
     shown.forEach((angle, joint) => {
       const slider = this.sliders[joint]!;
-      if (document.activeElement !== slider || !this.hand.leads) slider.value = String(angle);
+      if (document.activeElement !== slider || !this.leaderControl.leads) slider.value = String(angle);
       setText(this.words[joint]!, angle.toFixed(2));
     });
     this.pads.forEach(({ knob, follower: ring }, place) => {

@@ -6,7 +6,7 @@ import { REASON } from "../in_the_way";
 import type { View } from "../view";
 import { SIZES, type Bench, type BenchControls, type BenchWish, type Services, type Range, type Size } from "../../session/services";
 import type { Session } from "../../session/session";
-import type { LeaderHand } from "./hand";
+import type { LeaderControl } from "./leader_control";
 import { DrawnMotion } from "./drawn_motion";
 import { Lead } from "./lead";
 
@@ -26,7 +26,7 @@ export class BenchView implements View {
 
   /** Recorded motions are files of a host, where there is one. */
   constructor(
-    private readonly session: Session, private readonly bench: Bench, private readonly hand: LeaderHand,
+    private readonly session: Session, private readonly bench: Bench, private readonly leaderControl: LeaderControl,
     private readonly host: Pick<Services, "state"> | null,
   ) {
     session.changed.on(() => this.show());
@@ -52,8 +52,8 @@ export class BenchView implements View {
   }
 
   private build(controls: BenchControls): void {
-    this.lead = new Lead(this.hand, this.session.samples, controls.leader);
-    this.drawn = new DrawnMotion(this.hand, controls.leader);
+    this.lead = new Lead(this.leaderControl, this.session.samples, controls.leader);
+    this.drawn = new DrawnMotion(this.leaderControl, controls.leader);
     this.cards.replaceChildren(el("div", { class: "side" }, this.lead.element, this.drawn.element),
       el("div", { class: "side" }, this.motions(), this.faults(controls), this.sizes(controls)));
   }
@@ -65,7 +65,7 @@ export class BenchView implements View {
   private motions(): HTMLElement {
     const lead = (motion: string): void => {
       void this.change({ motion });
-      this.hand.letGo();
+      this.leaderControl.letGo();
     };
     this.recorded.addEventListener("change", () => {
       if (this.recorded.value) lead(this.recorded.value);

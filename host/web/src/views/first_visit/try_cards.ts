@@ -1,6 +1,6 @@
 // Three things that a first visitor can try, and what just happened when one is tried.
 
-import type { LeaderHand } from "../bench/hand";
+import type { LeaderControl } from "../bench/leader_control";
 import type { Bench } from "../../session/services";
 import { RefusedError } from "../../link/declared";
 import { button, el, setText } from "../../parts/dom";
@@ -85,7 +85,7 @@ export class TryCards {
 
   /** `docs` is the folder of the documentation, null for none; `tune` shows where sets are tuned. */
   constructor(
-    private readonly session: Session, private readonly bench: Bench, private readonly hand: LeaderHand,
+    private readonly session: Session, private readonly bench: Bench, private readonly leaderControl: LeaderControl,
     docs: string | null, tune: () => void,
   ) {
     const card = (words: Words, act: (done: boolean) => Promise<void>): Card =>
@@ -97,12 +97,12 @@ export class TryCards {
   }
 
   private async pullShoulder(): Promise<void> {
-    this.hand.take(SHOULDER, PULLED_RAD);
+    this.leaderControl.take(SHOULDER, PULLED_RAD);
   }
 
   private async reach(): Promise<void> {
     await this.bench.change({ motion: "reaches" });
-    this.hand.letGo();
+    this.leaderControl.letGo();
   }
 
   private async mend(): Promise<void> {
@@ -120,6 +120,6 @@ export class TryCards {
 
   /** A person may have pulled it in the picture. */
   frame(): void {
-    this.pull.show(this.hand.leads);
+    this.pull.show(this.leaderControl.leads);
   }
 }

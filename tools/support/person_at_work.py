@@ -12,7 +12,7 @@ from greywhale.files.trajectory import Trajectory
 from greywhale.protocol.firmware import JOINTS
 from greywhale_sim.assemble import BenchOptions, build_bench
 from greywhale_sim.bench import SLICE_S, Bench
-from greywhale_sim.leader import LeaderPlayer
+from greywhale_sim.leader_player import LeaderPlayer
 from greywhale_sim.lockstep import LockStepBench
 from tools.support.foreign_arm import MuJoCoPlant
 
@@ -24,7 +24,7 @@ CHANGE_S = 5.0
 ArmAt = Callable[[float], ArmParameters]
 
 
-class Person(LeaderPlayer):
+class PersonAtWork(LeaderPlayer):
     """Goes on with the motion after a short pause of the motors; `at_time` is called with the seconds of work.
 
     `errors` holds the mean of (leader - follower)², (4,) rad², of every whole second of work.
@@ -55,13 +55,13 @@ class Person(LeaderPlayer):
 
 def working_bench(
     motion: Trajectory, arm_at: ArmAt, options: BenchOptions | None = None, plant: MuJoCoPlant | None = None
-) -> tuple[LockStepBench, Person]:
+) -> tuple[LockStepBench, PersonAtWork]:
     """An arm, without options the default one, which becomes what `arm_at` says of the seconds of work, and who works
     with it. Another engine's plant moves it where one is given.
     """
     options = options or BenchOptions()
     bench = build_bench(options, plant)
-    person = Person(motion, lambda seconds: become(bench, arm_at(seconds)))
+    person = PersonAtWork(motion, lambda seconds: become(bench, arm_at(seconds)))
     bench.leader = person
     bench.place(person.home)
     return LockStepBench(options, bench), person

@@ -1,5 +1,5 @@
 // The person at the bench inside a page: leads the leader arm by hand, and brings the follower along while the motors
-// are off. The same as greywhale_sim.leader with a live hand; tests/oracles proves it.
+// are off. The same as greywhale_sim.leader_player with a StreamedLeader; tests/oracles proves it.
 #pragma once
 
 #include <algorithm>
@@ -10,9 +10,9 @@ namespace greywhale::web {
 
 using Four = std::array<double, 4>;
 
-class Hand {
+class BenchPerson {
  public:
-  explicit Hand(const Four& angles) : angles_(angles) {}
+  explicit BenchPerson(const Four& angles) : angles_(angles) {}
 
   void lead(const Four& target) { target_ = target; }  // rad
   const Four& angles() const { return angles_; }       // of the leader arm

@@ -7,8 +7,8 @@ import pytest
 
 from greywhale.base.errors import UserError
 from greywhale.files.trajectory import Trajectory
-from greywhale_sim.leader import BRING_BACK_S, LET_GO_S, LeaderPlayer
-from greywhale_sim.live_hand import FASTEST
+from greywhale_sim.leader_player import BRING_BACK_S, LET_GO_S, LeaderPlayer
+from greywhale_sim.streamed_leader import FASTEST
 
 SLICE = 0.01
 START = 1.0

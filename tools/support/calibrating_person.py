@@ -65,7 +65,7 @@ def save_arm(arm: ArmParameters, folder: Path) -> str:
 
 
 @dataclass
-class Hands:
+class CalibratingPerson:
     """Turns joints, holds poses; `second` is what it holds where the second pose is asked for, in degrees.
 
     It stands for the person at the terminal, as `greywhale.cli.person` does for a real one.
@@ -115,7 +115,7 @@ class Hands:
         self.do(_hand(side, degrees, seconds))
 
     def do(self, command: str) -> None:
-        """Give the hands a command, and wait until they are where it sends them."""
+        """Give the bench a command to the person, and wait until it is carried out."""
         self.begin(command)
         while self.answer() is None:
             pass
@@ -131,9 +131,9 @@ def _hand(side: str, degrees: Floats, seconds: float) -> str:
     return f"hand {side} {' '.join(f'{angle:.6f}' for angle in np.radians(degrees))} {seconds}"
 
 
-def quick_hands(bench: RunningBench) -> Hands:
+def quick_person(bench: RunningBench) -> CalibratingPerson:
     """For tests of what does not depend on the pace."""
-    return Hands(bench, sweep_s=0.3, pose_s=0.3)
+    return CalibratingPerson(bench, sweep_s=0.3, pose_s=0.3)
 
 
 @dataclass(frozen=True)
@@ -145,11 +145,11 @@ class Calibrated:
     said: str
 
 
-def run_calibrate(hands: Hands, folder: Path, *more: str) -> Calibrated:
-    """`greywhale calibrate` in that folder, with these hands in the place of a person at the terminal."""
+def run_calibrate(person: CalibratingPerson, folder: Path, *more: str) -> Calibrated:
+    """`greywhale calibrate` in that folder, with this person at the terminal."""
     out, said = io.StringIO(), io.StringIO()
-    words = ["calibrate", "--port", hands.bench.port, "--yes", "--json", "--backup", f"{folder}/{BACKUP}", *more]
-    with mock.patch.object(verb, "Terminal", return_value=hands):
+    words = ["calibrate", "--port", person.bench.port, "--yes", "--json", "--backup", f"{folder}/{BACKUP}", *more]
+    with mock.patch.object(verb, "Terminal", return_value=person):
         with contextlib.redirect_stdout(out), contextlib.redirect_stderr(said):
             code = run(words)
-    return Calibrated(code, out.getvalue(), "\n".join([*hands.said, said.getvalue()]))
+    return Calibrated(code, out.getvalue(), "\n".join([*person.said, said.getvalue()]))

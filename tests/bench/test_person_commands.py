@@ -11,8 +11,8 @@ import pytest
 from greywhale.base.errors import UserError
 from greywhale_sim import commands
 from greywhale_sim.bench import Bench
-from greywhale_sim.hands import ENDS_DEG, HANGING_DEG, HELP
 from greywhale_sim.pacing import Pacer
+from greywhale_sim.person_commands import ENDS_DEG, HANGING_DEG, HELP
 from greywhale_sim.serial_port import SerialPort
 from greywhale_sim.serve import ByHand
 from greywhale_sim.server import Server

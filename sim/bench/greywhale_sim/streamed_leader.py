@@ -1,4 +1,4 @@
-"""A hand that is told again and again where to lead the arm: it gets there smoothly, and no faster than hands are."""
+"""A leader that is sent angles again and again: it goes there smoothly, and no faster than hands are."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from greywhale.base.types import Floats
 PULL, FASTEST = 25.0, 5.0
 
 
-class LiveHand:
+class StreamedLeader:
     """`angles` (4,) rad follow `target` from slice to slice."""
 
     def __init__(self, angles: Floats) -> None:

@@ -1,4 +1,4 @@
-"""The person's hands as commands of a running bench, in degrees, as `greywhale calibrate` asks for them."""
+"""Commands to the person at a running bench, in degrees, as `greywhale calibrate` asks for them."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ def hang(server: Server) -> dict[str, Any]:
 
 
 def explain(server: Server) -> dict[str, Any]:
-    """What the hands can do."""
+    """Answer with the list of these commands."""
     return {"says": HELP}
 
 

@@ -16,7 +16,7 @@ from greywhale.base.errors import UserError
 from greywhale.base.types import Floats
 from greywhale.files.trajectory import Trajectory
 from greywhale.protocol.joints import ALL, Joints
-from greywhale_sim.live_hand import LiveHand
+from greywhale_sim.streamed_leader import StreamedLeader
 
 Place = tuple[Floats | None, Floats | None, float]  # of leader and follower, None: where it is; seconds on the way
 
@@ -48,11 +48,11 @@ class LeaderPlayer:
         self._taken_at: Floats = self.home  # the leader arm when the motors went on
         self.hold: Floats | None = self.home
         self.plays = 0
-        self._hand: LiveHand | None = None  # in the place of the motion
+        self._streamed: StreamedLeader | None = None  # in the place of the motion
 
     def take_up(self, motion: Trajectory) -> None:
         """Play another motion from the next enable on; held arms are brought to its first pose within a second."""
-        self._hand = None
+        self._streamed = None
         self._learn(motion)
         self.rest, self._further = (self.home, self.home), []
         if self.hold is not None:
@@ -63,8 +63,8 @@ class LeaderPlayer:
 
         While they are off, the other hand brings the follower along. Ends with `take_up` and with `bring`.
         """
-        self._hand = self._hand or LiveHand(self.angles)
-        self._hand.target = angles * self._in_use
+        self._streamed = self._streamed or StreamedLeader(self.angles)
+        self._streamed.target = angles * self._in_use
         self._further = []
 
     def bring(self, leader: Floats | None, follower: Floats | None, seconds: float) -> None:
@@ -75,15 +75,15 @@ class LeaderPlayer:
         """The same to one place after another."""
         if self.hold is None:
             raise UserError("the hands are on the arms only while the motors are off; stop them first.")
-        self._hand = None
+        self._streamed = None
         self._further = list(places)
         self._bring_next()
 
     def step(self, enabled: bool, follower: Floats) -> None:
         """Advance one slice; `follower` is where the follower is now."""
-        if self._hand is not None:
-            self._hand.step(self._slice_s)
-            self.rest = (self._hand.angles, self._hand.angles)
+        if self._streamed is not None:
+            self._streamed.step(self._slice_s)
+            self.rest = (self._streamed.angles, self._streamed.angles)
         if enabled:
             self._follow_motion()
         elif self._off < self._let_go:
@@ -138,11 +138,11 @@ class LeaderPlayer:
             self.hold = None
             self.rest, self._further, self._way = (self.home, self.home), [], self._bring_back
             self._taken_at = self.angles
-            if self._hand is not None:
-                self._hand.take(self.angles)
+            if self._streamed is not None:
+                self._streamed.take(self.angles)
         self._on += 1
-        if self._hand is not None:
-            self.angles = self._hand.angles
+        if self._streamed is not None:
+            self.angles = self._streamed.angles
             return
         row = self._on - self._start
         if row < 0:  # the motors may have gone on while the arms were being brought back

@@ -1,10 +1,10 @@
-// The hand that leads the bench's leader arm from this page: one for all views, and the newest wish wins.
+// Leads the bench's leader arm as the person at this page wants: one for all views, and the newest wish wins.
 
 import type { Bench } from "../../session/services";
 import { JOINTS } from "../../session/samples";
 import type { Session } from "../../session/session";
 
-export class LeaderHand {
+export class LeaderControl {
   private readonly wanted: number[] = new Array<number>(JOINTS).fill(0);
   private held = false;
   private sending = false;
@@ -12,12 +12,12 @@ export class LeaderHand {
 
   constructor(private readonly bench: Bench, private readonly session: Session) {}
 
-  /** Whether this hand leads; until then the leader moves by itself. */
+  /** True once a person at this page leads; until then the leader moves by itself. */
   get leads(): boolean {
     return this.held;
   }
 
-  /** Where the leader is wanted while the hand leads, else where it is; rad. */
+  /** The angles wanted while a person at this page leads, else those of the leader; rad. */
   get angles(): readonly number[] {
     return this.held ? this.wanted : this.session.samples.newest("leader");
   }
