@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from greywhale.base.types import Floats
 from greywhale.optimise import Box
 from greywhale.optimise.grey_wolf import Draw, GreyWolf, GreyWolfWhale, GreyWolfWhaleAsPrinted, alpha_factor, hunt
-from greywhale.optimise.relative import RelativeWolfWhale
+from greywhale.optimise.shift_invariant import ShiftInvariantWolfWhale
 from greywhale.optimise.swarm import Swarm, steer
 from greywhale.optimise.whale import Whale, swim
 
@@ -185,8 +185,8 @@ FIRST = (column(0.1, 0.5, 0.9), 0.5)
 MOVE = (0.6, 0.5, 0.1, 0.5, 0.6, 0.5, 0.9, 0.0, 0.5)
 
 
-def relative(*numbers: object) -> RelativeWolfWhale:
-    optimiser = RelativeWolfWhale(Box([0.0], [1.0]), 30, Scripted(*numbers), pack=3)  # type: ignore[arg-type]
+def relative(*numbers: object) -> ShiftInvariantWolfWhale:
+    optimiser = ShiftInvariantWolfWhale(Box([0.0], [1.0]), 30, Scripted(*numbers), pack=3)  # type: ignore[arg-type]
     assert optimiser.ask() == pytest.approx(column(1 / 6, 1 / 2, 5 / 6))
     optimiser.tell([3, 1, 2])
     return optimiser
@@ -230,7 +230,7 @@ def test_relative_wolf_keeps_coordinates_but_never_all() -> None:
     source = Scripted(
         [[0.1, 0.1], [0.5, 0.5], [0.9, 0.9]], 0.5, 0.6, 0.75, 0.1, 0.5, 0.6, 0.5, kept, [0.9, 0.9, 0.1], 0.5
     )
-    optimiser = RelativeWolfWhale(box, 30, source, pack=3)
+    optimiser = ShiftInvariantWolfWhale(box, 30, source, pack=3)
     first = optimiser.ask()
     optimiser.tell([3, 1, 2])
     assert (optimiser.ask() == first).tolist() == [[True, False], [True, False], [False, False]]

@@ -18,7 +18,7 @@ from greywhale.loop.closed_loop import Timing, settings_numbers, with_right_moto
 from greywhale.loop.leader import SLICE_S
 from greywhale.measure import swings
 from greywhale.measure.runs import stretches
-from greywhale.optimise import relative
+from greywhale.optimise import shift_invariant
 from greywhale.optimise.optimiser import PACK
 from greywhale.protocol.firmware import JOINTS, pwm_steps
 from greywhale.protocol.table import CONTROLLER_COLUMNS
@@ -186,9 +186,9 @@ def _search(model: Model) -> dict[str, Any]:
     return {
         "budget": BUDGET,
         "pack": PACK if BUDGET < default.SHORT_BUDGET else default.FULL_PACK,
-        "a": relative.A,
-        "weights": relative.WEIGHTS,
-        "keep": relative.KEEP,
+        "a": shift_invariant.A,
+        "weights": shift_invariant.WEIGHTS,
+        "keep": shift_invariant.KEEP,
         "stages": [
             {
                 "name": stage.name,

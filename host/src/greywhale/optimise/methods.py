@@ -16,14 +16,14 @@ from greywhale.optimise.differential_evolution import DifferentialEvolution
 from greywhale.optimise.grey_wolf import GreyWolf, GreyWolfWhale, GreyWolfWhaleAsPrinted
 from greywhale.optimise.nevergrad_choice import NevergradChoice
 from greywhale.optimise.optimiser import History, Optimiser
-from greywhale.optimise.relative import RelativeWolfWhale
+from greywhale.optimise.shift_invariant import ShiftInvariantWolfWhale
 from greywhale.optimise.swarm import RandomSearch, Swarm
 from greywhale.optimise.whale import Whale
 
 METHODS: dict[str, type[Optimiser]] = {
     method.name: method
     for method in (
-        RelativeWolfWhale,
+        ShiftInvariantWolfWhale,
         GreyWolfWhale,
         GreyWolfWhaleAsPrinted,
         GreyWolf,
@@ -37,7 +37,7 @@ METHODS: dict[str, type[Optimiser]] = {
 # Methods of packages that are not installed by default.
 PEERS: dict[str, type[Optimiser]] = {NevergradChoice.name: NevergradChoice}
 # At 500 evaluations on shifted functions it is ahead of differential evolution; the figures are in docs/optimise.md.
-DEFAULT = RelativeWolfWhale.name
+DEFAULT = ShiftInvariantWolfWhale.name
 
 Costs = Callable[[Floats], ArrayLike]
 

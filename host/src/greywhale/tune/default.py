@@ -30,7 +30,7 @@ from greywhale.base.errors import counted
 from greywhale.base.types import Controllers, Flags, Floats
 from greywhale.measure.swings import CHATTER_AT_REST_HZ, CHATTER_MOVING_HZ, LIMIT_CYCLE, RATTLE_MOVING_RAD
 from greywhale.optimise.optimiser import PACK
-from greywhale.optimise.relative import RelativeWolfWhale
+from greywhale.optimise.shift_invariant import ShiftInvariantWolfWhale
 from greywhale.protocol.joints import unused
 from greywhale.protocol.table import CONTROLLER_COLUMNS
 from greywhale.tune.judge.choose import FAIR, Judge, Remembering, choose, next_best
@@ -48,7 +48,7 @@ from greywhale.tune.search.space import Space
 from greywhale.tune.search.training import TrainingMotion, own_motion, training_motions
 
 BUDGET = 2400
-METHOD = RelativeWolfWhale.name  # of the default method
+METHOD = ShiftInvariantWolfWhale.name  # of the default method
 
 
 @dataclass(frozen=True)

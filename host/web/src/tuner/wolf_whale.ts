@@ -1,4 +1,4 @@
-// The GWO-WOA that `greywhale tune` searches with (greywhale/optimise/relative.py, which explains it), bit for bit.
+// The GWO-WOA that `greywhale tune` searches with (greywhale/optimise/shift_invariant.py, which explains it), bit for bit.
 
 import type { SearchData } from "./data";
 import type { Random } from "./random";

@@ -31,7 +31,7 @@ WEIGHTS = (0.5, 0.3, 0.2)
 KEEP = 0.2
 
 
-class RelativeWolfWhale(Optimiser):
+class ShiftInvariantWolfWhale(Optimiser):
     """Translation- and scale-invariant GWO-WOA."""
 
     name: ClassVar[str] = "gwo-woa-relative"
