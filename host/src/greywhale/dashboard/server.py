@@ -46,21 +46,25 @@ def application(answers: Answers, page: Path, access: Access, port: int) -> Guar
         Route(ENTRY, _entry(access), methods=["POST"]),
         WebSocketRoute("/board", partial(serve_board, relay=answers.relay)),
         WebSocketRoute("/host", partial(serve_host, jobs=answers.jobs)),
-        Route("/history", _told(lambda asked: answers.history(asked.get("from")))),
-        Route("/state", _told(lambda asked: answers.state())),
-        Route("/arm", _told(lambda asked: answers.describe_arm(asked.get("file")))),
-        Route("/controller", _told(lambda asked: answers.controller(asked.get("file", "")))),
-        Route("/log", _told(lambda asked: answers.log(asked.get("file", "")))),
-        Route("/predict", _told(answers.predict), methods=["POST"]),
-        Route("/jobs", _told(lambda asked: answers.jobs.listed()), methods=["GET"]),
-        Route("/jobs", _told(lambda asked: answers.jobs.start(asked, asked.get(PAGE_ID, ""))), methods=["POST"]),
-        Route("/jobs/{id}", _told(lambda asked: answers.jobs.stop(asked["id"])), methods=["DELETE"]),
-        Route("/jobs/{id}", _told(lambda asked: answers.jobs.say(asked["id"], asked.get("line"))), methods=["POST"]),
+        Route("/history", _endpoint(lambda asked: answers.history(asked.get("from")))),
+        Route("/state", _endpoint(lambda asked: answers.state())),
+        Route("/arm", _endpoint(lambda asked: answers.describe_arm(asked.get("file")))),
+        Route("/controller", _endpoint(lambda asked: answers.controller(asked.get("file", "")))),
+        Route("/log", _endpoint(lambda asked: answers.log(asked.get("file", "")))),
+        Route("/predict", _endpoint(answers.predict), methods=["POST"]),
+        Route("/jobs", _endpoint(lambda asked: answers.jobs.listed()), methods=["GET"]),
+        Route("/jobs", _endpoint(lambda asked: answers.jobs.start(asked, asked.get(PAGE_ID, ""))), methods=["POST"]),
+        Route("/jobs/{id}", _endpoint(lambda asked: answers.jobs.stop(asked["id"])), methods=["DELETE"]),
+        Route(
+            "/jobs/{id}", _endpoint(lambda asked: answers.jobs.say(asked["id"], asked.get("line"))), methods=["POST"]
+        ),
     ]
     if (bench := answers.bench) is not None:
         routes += [
-            Route("/bench", _told(lambda asked: bench.controls()), methods=["GET"]),
-            Route("/bench", _told(lambda asked: answers.change_bench(asked, asked.pop(PAGE_ID, ""))), methods=["POST"]),
+            Route("/bench", _endpoint(lambda asked: bench.controls()), methods=["GET"]),
+            Route(
+                "/bench", _endpoint(lambda asked: answers.change_bench(asked, asked.pop(PAGE_ID, ""))), methods=["POST"]
+            ),
         ]
     private = {route.path for route in routes if isinstance(route, Route | WebSocketRoute)}
     first = {path.split("/")[1] for path in private}
@@ -115,23 +119,26 @@ def _entry(access: Access) -> Callable[[Request], Awaitable[Response]]:
     return enter
 
 
-def _told(answer: Callable[[dict[str, Any]], object]) -> Callable[[Request], Awaitable[Response]]:
-    """An answer, JSON or bytes, that takes a moment; what is asked is in the address, or a JSON object in the body."""
+def _endpoint(answer: Callable[[dict[str, Any]], object]) -> Callable[[Request], Awaitable[Response]]:
+    """Make an endpoint that answers with JSON or bytes, in a thread of its own, since `answer` takes a moment.
 
-    async def tell(request: Request) -> Response:
+    The request's arguments are in its address, or are a JSON object in its body.
+    """
+
+    async def respond(request: Request) -> Response:
         try:
             asked = await _object(request) if request.method == "POST" else dict(request.query_params)
             asked |= request.path_params
             if (page := request.headers.get("x-greywhale-page")) is not None:
                 asked[PAGE_ID] = page
-            told = await asyncio.to_thread(answer, asked)
-            return Response(told, media_type=_BYTES) if isinstance(told, bytes) else JSONResponse(told)
+            answered = await asyncio.to_thread(answer, asked)
+            return Response(answered, media_type=_BYTES) if isinstance(answered, bytes) else JSONResponse(answered)
         except UserError as error:
             return JSONResponse({"error": error.message, "exit_code": error.exit_code}, 400)
         except ClientDisconnect:  # also what is too long breaks off so
             return Response(status_code=413)
 
-    return tell
+    return respond
 
 
 async def _object(request: Request) -> dict[str, Any]:
