@@ -29,20 +29,20 @@ function begin({ token, sentence }: Access): void {
     ": it brings a simulated arm with the real firmware.",
   ];
   const shell = new Shell(session, [new LiveView(session)], token ? remedy : []); // without a token no board would help
-  if (token) addHost(shell, session, new HostServices(token, () => board.page));
+  if (token) addServices(shell, session, new HostServices(token, () => board.page));
 }
 
 /** Adds what needs a host beside the board. */
-function addHost(shell: Shell, session: Session, host: Services): void {
-  document.body.append(new Countdown(session, host.jobs).element);
-  const arm = new ArmView(session, host);
-  for (const view of [arm, new ControllerView(session, host), new DoView(session, host), new LogsView(session, host)]) {
+function addServices(shell: Shell, session: Session, services: Services): void {
+  document.body.append(new Countdown(session, services.jobs).element);
+  const arm = new ArmView(session, services);
+  for (const view of [arm, new ControllerView(session, services), new DoView(session, services), new LogsView(session, services)]) {
     shell.add(view);
   }
   void session.attempt(async () => {
-    if (!(await host.state()).sim) return;
-    const leaderControl = new LeaderControl(host.bench, session);
+    if (!(await services.state()).sim) return;
+    const leaderControl = new LeaderControl(services.bench, session);
     arm.leadBy(leaderControl);
-    shell.add(new BenchView(session, host.bench, leaderControl, host));
+    shell.add(new BenchView(session, services.bench, leaderControl, services));
   });
 }

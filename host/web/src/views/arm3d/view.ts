@@ -23,7 +23,7 @@ export class ArmView implements View {
   private leaderControl: LeaderControl | null = null;
   private loading = false;
 
-  constructor(private readonly session: Session, private readonly host: Pick<Services, "arm">) {
+  constructor(private readonly session: Session, private readonly services: Pick<Services, "arm">) {
     this.element = el("section", { class: "card arm" },
       el("div", { class: "tools" }, ...PRESET_NAMES.map((preset) =>
         button(upperFirst(preset), () => this.scene?.look(preset))), this.words),
@@ -46,7 +46,7 @@ export class ArmView implements View {
 
   private async load(): Promise<void> {
     setText(this.words, "Loading the arm.");
-    const [{ ArmScene }, arm] = await Promise.all([import("./scene"), this.host.arm()]);
+    const [{ ArmScene }, arm] = await Promise.all([import("./scene"), this.services.arm()]);
     const scene = this.scene = await ArmScene.on(this.canvas, arm);
     scene.paint(colours());
     scene.leadBy(this.leaderControl);

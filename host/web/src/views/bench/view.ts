@@ -27,7 +27,7 @@ export class BenchView implements View {
   /** Recorded motions are files of a host, where there is one. */
   constructor(
     private readonly session: Session, private readonly bench: Bench, private readonly leaderControl: LeaderControl,
-    private readonly host: Pick<Services, "state"> | null,
+    private readonly services: Pick<Services, "state"> | null,
   ) {
     session.changed.on(() => this.show());
   }
@@ -44,8 +44,8 @@ export class BenchView implements View {
       const controls = await this.bench.controls();
       if (!this.lead) this.build(controls);
       if (controls.broken) this.broken.replaceChildren(...controls.broken.map((name) => el("li", {}, name)));
-      if (!this.host) return;
-      const motions = (await this.host.state()).files.filter(({ kind }) => kind === "motion");
+      if (!this.services) return;
+      const motions = (await this.services.state()).files.filter(({ kind }) => kind === "motion");
       this.recorded.replaceChildren(el("option", { value: "" }, motions.length ? "a recorded motion" : "no motion in this folder"),
         ...motions.map(({ name }) => el("option", { value: name }, name)));
     });
@@ -73,7 +73,7 @@ export class BenchView implements View {
     return el("section", { class: "card" }, el("h2", {}, "A person leads"),
       el("div", { class: "row" },
         button("Reach here and there", () => lead("reaches"), { title: "Smooth reaches, as a person makes them; while the motors are off" }),
-        button("Hold still", () => lead("hold")), ...(this.host ? [this.recorded] : [])));
+        button("Hold still", () => lead("hold")), ...(this.services ? [this.recorded] : [])));
   }
 
   private faults({ faults }: BenchControls): HTMLElement {

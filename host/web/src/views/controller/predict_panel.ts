@@ -17,7 +17,7 @@ export class PredictPanel {
   private joint = 0;
   private last: Prediction | null = null;
 
-  constructor(private readonly host: Services) {
+  constructor(private readonly services: Services) {
     this.element = el("section", { class: "card predict" }, el("h2", {}, "The model predicts"),
       ...(["step", "reach"] as const).map((kind) => el("figure", {},
         el("figcaption", {}, kind === "step" ? "Step " : "Reach ", this.pictures[kind].words), this.pictures[kind].canvas)),
@@ -42,7 +42,7 @@ export class PredictPanel {
       const { raw, board } = this.wanted;
       this.wanted = null;
       try {
-        this.last = await this.host.predict(raw, board);
+        this.last = await this.services.predict(raw, board);
         setText(this.problem, "");
       } catch (error) {
         setText(this.problem, sentenceOf(error));

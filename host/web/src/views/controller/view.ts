@@ -54,13 +54,13 @@ export class ControllerView implements View {
   };
 
   /** `tuner` searches within the page, where no host has a verb for it. */
-  constructor(private readonly session: Session, private readonly host: Services | null, tuner: Tuner | null = null) {
+  constructor(private readonly session: Session, private readonly services: Services | null, tuner: Tuner | null = null) {
     const moved = (name: keyof Settings, raw: number, grip: string): void =>
       this.draft?.set(this.shownJoint, name, raw, grip && `${this.shownJoint} ${grip}`);
     const letGo = (): void => this.draft?.letGo();
     this.errorSets = new SetsEditor("Sets of the error", ["NE", "ZE", "PE"], ERROR_CORNERS, moved, letGo);
     this.changeSets = new SetsEditor("Sets of the change of error", ["NCE", "ZCE", "PCE"], CHANGE_CORNERS, moved, letGo);
-    this.predict = host ? new PredictPanel(host) : null;
+    this.predict = services ? new PredictPanel(services) : null;
     this.tune = tuner && new TunePanel(tuner, () => this.acceptable(), (rows) => this.draft?.replace(ofRows(rows)));
     this.tabs = Array.from({ length: JOINTS }, (_, joint) => button(`Joint ${joint}`, () => this.showJoint(joint)));
     this.files = select("Compare with", [["", "no file"]], (name) => void this.act(() => this.compare(name)));
@@ -90,7 +90,7 @@ export class ControllerView implements View {
           el("h2", {}, "Change of error"), this.changeSets.element, el("div", { class: "factors" }, ...fields)),
         el("section", { class: "card" }, el("h2", {}, "Not yet on the board"), this.toBoard,
           el("h2", {}, "Not yet stored"), this.toStore,
-          ...(this.host ? [el("h2", {}, "Against a file"), this.files, this.toFile] : []))),
+          ...(this.services ? [el("h2", {}, "Against a file"), this.files, this.toFile] : []))),
       el("div", { class: "side" },
         el("section", { class: "card" }, el("h2", {}, "Control surface"), this.surface.element),
         ...(this.predict ? [this.predict.element] : []), ...(this.tune ? [this.tune.element] : [])));
@@ -127,12 +127,12 @@ export class ControllerView implements View {
     void this.act(async () => {
       if (this.session.link.open) await this.session.readParameters(); // else the session reads them once it is
       this.take();
-      if (this.host) await this.listFiles(this.host);
+      if (this.services) await this.listFiles(this.services);
     });
   }
 
-  private async listFiles(host: Services): Promise<void> {
-    const { controllers, files } = await host.state();
+  private async listFiles(services: Services): Promise<void> {
+    const { controllers, files } = await services.state();
     const named = files.filter(({ kind }) => kind === "controller" || kind === "parameters").map(({ name }) => name);
     const chosen = this.files.value;
     this.files.replaceChildren(...["", ...controllers, ...named].map((name) => el("option", { value: name }, name || "no file")));
@@ -182,10 +182,10 @@ export class ControllerView implements View {
   }
 
   private async compare(name: string): Promise<void> {
-    if (!this.host || !this.draft || !name) {
+    if (!this.services || !this.draft || !name) {
       this.compared = null;
     } else {
-      const raw = await this.host.controller(name);
+      const raw = await this.services.controller(name);
       const joints = this.draft.joints.map((settings, joint) => {
         const other: Record<string, number> = { ...settings };
         for (const one of SETTING_NAMES) other[one] = raw[parameterName(joint, one)] ?? settings[one];

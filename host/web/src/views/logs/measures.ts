@@ -27,12 +27,12 @@ export class LogMeasures {
   private asked = ""; // the id of the job that measures them
   private readonly ended = new Map<string, Job>(); // jobs of evaluate, which may end before their id is known here
 
-  constructor(private readonly host: Services) {
+  constructor(private readonly services: Services) {
     this.element.append(
       el("div", { class: "scroll", attrs: { tabindex: "0", role: "region", "aria-label": "Measures" } },
         el("table", { class: "values" }, tableHead("log", ...COLUMNS.map(([title]) => title)), this.body)),
       this.words);
-    host.jobs.listen((job) => {
+    services.jobs.listen((job) => {
       if (job.verb !== "evaluate" || job.state === "running") return;
       this.ended.set(job.id, job);
       if (job.id === this.asked) this.show();
@@ -45,7 +45,7 @@ export class LogMeasures {
     this.asked = "";
     this.show();
     if (!logs.length) return;
-    const id = await this.host.jobs.start("evaluate", { logs });
+    const id = await this.services.jobs.start("evaluate", { logs });
     if (this.logs !== logs) return; // others were chosen meanwhile
     this.asked = id;
     this.show();

@@ -33,8 +33,8 @@ export class LogsView implements View {
   private readonly picture = el("div", { hidden: true });
   private readonly hint = el("p", { class: "quiet" }, "Choose a log, or two to lay them over each other.");
 
-  constructor(private readonly session: Session, private readonly host: Services) {
-    this.measures = new LogMeasures(host);
+  constructor(private readonly session: Session, private readonly services: Services) {
+    this.measures = new LogMeasures(services);
     const joints = Array.from({ length: JOINTS }, (_, joint) => [String(joint), `joint ${joint}`] as const);
     this.picture.append(
       el("div", { class: "tools", attrs: { role: "toolbar", "aria-label": "Time and joint" } },
@@ -64,7 +64,7 @@ export class LogsView implements View {
   }
 
   private async refresh(): Promise<void> {
-    const logs = (await this.host.state()).files.filter(({ kind }) => kind === "log");
+    const logs = (await this.services.state()).files.filter(({ kind }) => kind === "log");
     if (!logs.length) setText(this.hint, "The folder holds no log yet: record one in the view Do.");
     else setText(this.hint, "Choose a log, or two to lay them over each other.");
     this.list.replaceChildren(...logs.map(({ name }) => button(name, () => void this.session.attempt(() => this.choose(name)))));
@@ -96,7 +96,7 @@ export class LogsView implements View {
   }
 
   private async read(name: string): Promise<Chosen> {
-    return this.chosen.find((one) => one.name === name) ?? { name, samples: samplesIn(await this.host.log(name)) };
+    return this.chosen.find((one) => one.name === name) ?? { name, samples: samplesIn(await this.services.log(name)) };
   }
 
   private lay(chosen: readonly Chosen[]): void {

@@ -19,20 +19,20 @@ export class DoView implements View {
   private showReason = (): void => undefined; // of the verb whose form is there
   private readonly cards = new Map<string, JobCard>();
 
-  constructor(private readonly session: Session, private readonly host: Services) {
+  constructor(private readonly session: Session, private readonly services: Services) {
     this.jobs.append(this.none);
     this.element = el("div", { class: "editor" },
       el("section", { class: "card" }, el("h2", {}, "What shall greywhale do?"), this.reading, this.list, this.form),
       this.jobs);
     session.changed.on(() => this.showReason());
-    host.jobs.listen((job) => this.heard(job));
+    services.jobs.listen((job) => this.heard(job));
   }
 
   enter(): void {
     if (this.list.childElementCount) return;
     this.reading.hidden = false;
     const read = this.session.attempt(async () => {
-      const verbs = await this.host.jobs.verbs();
+      const verbs = await this.services.jobs.verbs();
       this.list.replaceChildren(...verbs.map((verb) => {
         const choice = button(verb.verb, () => {
           for (const other of this.list.children) other.setAttribute("aria-pressed", String(other === choice));
@@ -45,9 +45,9 @@ export class DoView implements View {
   }
 
   private async choose(verb: Verb): Promise<void> {
-    const { files } = await this.host.state();
+    const { files } = await this.services.state();
     const form = new VerbForm(verb, files, (given) =>
-      void this.session.attempt(async () => void await this.host.jobs.start(verb.verb, given)));
+      void this.session.attempt(async () => void await this.services.jobs.start(verb.verb, given)));
     this.form.replaceChildren(form.element);
     this.showReason = () => form.show(this.whyNot(verb));
     this.showReason();
@@ -64,7 +64,7 @@ export class DoView implements View {
   private heard(job: Job): void {
     let card = this.cards.get(job.id);
     if (!card) {
-      card = new JobCard(job.id, job.verb, this.host.jobs, (act) => void this.session.attempt(act));
+      card = new JobCard(job.id, job.verb, this.services.jobs, (act) => void this.session.attempt(act));
       this.cards.set(job.id, card);
       this.none.remove();
       this.jobs.prepend(card.element);
