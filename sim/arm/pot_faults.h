@@ -15,19 +15,19 @@
 
 namespace greywhale::arm {
 
-// How a potentiometer lies. Turned: its shaft is half a turn farther in its coupling, so that the dead zone, where the
-// wiper touches nothing, comes first. Crossed: the wiper is on the supply and an end of the track on the input, where
-// only the pull-down's current makes a difference.
-enum class PotFault : std::uint8_t { none, frozen, slipping, loose, noisy, humming, reversed, turned, crossed };
+// Faults of a potentiometer. Dead zone: its shaft is half a turn farther in its coupling, so that the dead zone, where
+// the wiper touches nothing, comes first. Crossed: the wiper is on the supply and an end of the track on the input,
+// where only the pull-down's current makes a difference.
+enum class PotFault : std::uint8_t { none, frozen, slipping, loose, noisy, humming, reversed, dead_zone, crossed };
 
 class PotFaults {
  public:
-  void inject(std::size_t pot, PotFault kind) { liars_.at(pot) = {kind}; }
+  void inject(std::size_t pot, PotFault fault) { pots_.at(pot) = {fault}; }
   void swap(std::size_t one, std::size_t other) { std::swap(order_.at(one), order_.at(other)); }
   void touch(std::size_t one, std::size_t other) { touching_ = {one, other}; }
   bool any() const {
-    const auto lies = [](const Liar& one) { return one.kind != PotFault::none; };
-    return touching_ || order_ != kRightly || std::any_of(liars_.begin(), liars_.end(), lies);
+    const auto is_faulty = [](const Pot& pot) { return pot.fault != PotFault::none; };
+    return touching_ || order_ != kRightly || std::any_of(pots_.begin(), pots_.end(), is_faulty);
   }
 
   // Changes the voltages, once a slice. Where nothing is wrong, time does not count.
@@ -35,8 +35,8 @@ class PotFaults {
     if (!any()) return;
     ++slice_;
     for (std::size_t pot = 0; pot < kPots; ++pot) {
-      if (liars_[pot].kind == PotFault::none) continue;
-      millivolts[pot] = std::clamp(shown(liars_[pot], millivolts[pot], pot), 0.0, kSupply);
+      if (pots_[pot].fault == PotFault::none) continue;
+      millivolts[pot] = std::clamp(shown(pots_[pot], millivolts[pot], pot), 0.0, kSupply);
     }
     if (touching_) {
       double& one = millivolts.at(touching_->first);
@@ -60,23 +60,23 @@ class PotFaults {
 
   static constexpr std::array<std::size_t, kPots> kRightly{0, 1, 2, 3, 4, 5, 6, 7};
 
-  struct Liar {
-    PotFault kind = PotFault::none;
-    double had = -1.0, showed = -1.0;
+  struct Pot {
+    PotFault fault = PotFault::none;
+    double had = -1.0, showed = -1.0;  // mV last time, of the shaft and on the wire; below 0 before the first
   };
 
-  double shown(Liar& liar, double truth, std::size_t pot) const {
-    switch (liar.kind) {
+  double shown(Pot& pot, double truth, std::size_t number) const {
+    switch (pot.fault) {
       case PotFault::none: break;
       case PotFault::frozen:
-        if (liar.showed < 0.0) liar.showed = truth;
-        return liar.showed;
-      case PotFault::slipping: return slipped(liar, truth);
+        if (pot.showed < 0.0) pot.showed = truth;
+        return pot.showed;
+      case PotFault::slipping: return slipped(pot, truth);
       case PotFault::loose: return slice_ % kLooseEvery < kLooseFor ? 0.0 : truth;
-      case PotFault::noisy: return truth + kNoisy * Noise(1, pot).gaussian(slice_);
+      case PotFault::noisy: return truth + kNoisy * Noise(1, number).gaussian(slice_);
       case PotFault::humming: return truth + kHum * sine(kHumTurn * (slice_ % kHumSlices));
       case PotFault::reversed: return kSupply - truth;
-      case PotFault::turned: {
+      case PotFault::dead_zone: {
         const double turn = std::fmod(kTrackShare * truth / kSupply + 0.5, 1.0);
         return turn <= kTrackShare ? kSupply * turn / kTrackShare : 0.0;
       }
@@ -85,16 +85,16 @@ class PotFaults {
     return truth;
   }
 
-  static double slipped(Liar& liar, double truth) {
-    if (liar.had < 0.0) liar.had = liar.showed = truth;
-    const double way = truth - liar.had;
-    if (std::fabs(way) >= kStill) liar.had = truth;
-    else return std::clamp(liar.showed + way, 0.0, kSupply);
-    liar.showed = std::clamp(liar.showed + (way > 0.0 ? way * (1.0 - kSlips) : way), 0.0, kSupply);
-    return liar.showed;
+  static double slipped(Pot& pot, double truth) {
+    if (pot.had < 0.0) pot.had = pot.showed = truth;
+    const double way = truth - pot.had;
+    if (std::fabs(way) >= kStill) pot.had = truth;
+    else return std::clamp(pot.showed + way, 0.0, kSupply);
+    pot.showed = std::clamp(pot.showed + (way > 0.0 ? way * (1.0 - kSlips) : way), 0.0, kSupply);
+    return pot.showed;
   }
 
-  std::array<Liar, kPots> liars_{};
+  std::array<Pot, kPots> pots_{};
   std::array<std::size_t, kPots> order_ = kRightly;
   std::optional<std::pair<std::size_t, std::size_t>> touching_;
   std::uint32_t slice_ = 0;

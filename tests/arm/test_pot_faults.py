@@ -1,4 +1,4 @@
-"""Potentiometers that lie on purpose: each in its way, and the others not at all."""
+"""Faulty potentiometers: each shows its fault, and the others none."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def test_a_noisy_one_is_off_by_a_tenth_of_a_volt_and_a_humming_one_with_the_main
     assert np.abs(hum[100]) == pytest.approx(25.0)
 
 
-def test_a_liar_tells_the_truth_again_when_it_is_told_to() -> None:
+def test_a_mended_potentiometer_shows_its_angle_again() -> None:
     faults = PotFaults()
     faults.inject(7, PotFault.REVERSED)
     assert shown(faults, 7, np.array([1000.0]))[0, 7] == 4000.0

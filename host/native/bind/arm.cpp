@@ -241,14 +241,14 @@ void bind_pots(nb::module_& m) {
 }
 
 void bind_pot_faults(nb::module_& m) {
-  nb::enum_<arm::PotFault>(m, "PotFault", "How a potentiometer lies.")
+  nb::enum_<arm::PotFault>(m, "PotFault", "A fault of a potentiometer.")
       .value("FROZEN", arm::PotFault::frozen)
       .value("SLIPPING", arm::PotFault::slipping, "its shaft, with every way up")
       .value("LOOSE", arm::PotFault::loose, "the wire is off for 2 ms again and again")
       .value("NOISY", arm::PotFault::noisy)
       .value("HUMMING", arm::PotFault::humming)
       .value("REVERSED", arm::PotFault::reversed, "the two ends of the track are exchanged")
-      .value("TURNED", arm::PotFault::turned, "the dead zone lies in its travel")
+      .value("DEAD_ZONE", arm::PotFault::dead_zone, "the dead zone lies in its travel")
       .value("CROSSED", arm::PotFault::crossed, "the wiper's wire and an end's are exchanged");
 
   using Millivolts = nb::ndarray<double, nb::shape<arm::kPots>, nb::c_contig, nb::device::cpu>;
@@ -260,10 +260,10 @@ void bind_pot_faults(nb::module_& m) {
           [](arm::PotFaults& self, std::size_t pot, std::optional<arm::PotFault> kind) {
             self.inject(pot, kind.value_or(arm::PotFault::none));
           },
-          "pot"_a, "kind"_a.none(), "Let it lie in this way from now on; None: it tells the truth again.")
+          "pot"_a, "kind"_a.none(), "Give it this fault from now on; None mends it.")
       .def("swap", &arm::PotFaults::swap, "one"_a, "other"_a, "Exchange the wires of two inputs.")
       .def("touch", &arm::PotFaults::touch, "one"_a, "other"_a, "Let the wipers' wires of two potentiometers touch.")
-      .def_prop_ro("any", &arm::PotFaults::any, "Whether anything is wrong.")
+      .def_prop_ro("any", &arm::PotFaults::any, "True if anything is wrong.")
       .def(
           "apply",
           [](arm::PotFaults& self, const Millivolts& millivolts) {

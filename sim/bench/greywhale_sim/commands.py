@@ -33,7 +33,7 @@ _WIRINGS = {
     "floating": arm.Wiring.CONNECTED,
     "shorted": arm.Wiring.SHORTED,
 }
-_LIES = {kind.name.lower(): kind for kind in arm.PotFault}
+_POT_FAULTS = {kind.name.lower().replace("_", "-"): kind for kind in arm.PotFault}
 
 
 def run(server: Server, text: str) -> CommandAnswer:
@@ -95,12 +95,12 @@ def hand(server: Server, side: str, *words: str) -> CommandAnswer:
 
 def pot(server: Server, side: str, joint: str, state: str) -> CommandAnswer:
     pots = {"leader": server.bench.leader_pots, "follower": server.bench.follower_pots}
-    if side not in pots or not 0 <= int(joint) <= 3 or state not in (*_WIRINGS, *_LIES):
+    if side not in pots or not 0 <= int(joint) <= 3 or state not in (*_WIRINGS, *_POT_FAULTS):
         raise ValueError
     number = int(joint) + (4 if side == "follower" else 0)
     pots[side].set_wiring(int(joint), _WIRINGS.get(state, arm.Wiring.CONNECTED))  # type: ignore[attr-defined]
     server.bench.let_float(number, state == "floating")
-    server.bench.pot_faults.inject(number, _LIES.get(state))
+    server.bench.pot_faults.inject(number, _POT_FAULTS.get(state))
     return {"pot": f"{side}_{joint}", "state": state}
 
 
@@ -231,7 +231,7 @@ COMMANDS: dict[str, tuple[Callable[..., CommandAnswer], str]] = {
     "turn": (person_commands.turn, "leader|follower 0..3 [SECONDS]"),
     "hold": (person_commands.hold, "DEGREES, once or four times"),
     "hang": (person_commands.hang, ""),
-    "pot": (pot, f"leader|follower 0..3 {'|'.join((*_WIRINGS, *_LIES))}"),
+    "pot": (pot, f"leader|follower 0..3 {'|'.join((*_WIRINGS, *_POT_FAULTS))}"),
     "swap": (swap, "POT POT"),
     "mistake": (mistake, "NAME[:PLACE]|none|list"),
     "pins": (pins, ""),

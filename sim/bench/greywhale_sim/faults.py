@@ -146,7 +146,7 @@ FAULTS = (
     ),
     Fault(
         "pot-dead-zone", "pot", "the track is mounted so that its dead zone lies within the joint's range", "calibrate",
-        "<pot> jumps from one end of its track to the other .* its dead zone lies there", _at_pot(PotFault.TURNED),
+        "<pot> jumps from one end of its track to the other .* its dead zone lies there", _at_pot(PotFault.DEAD_ZONE),
     ),
     Fault(
         "pot-slipping", "pot", "its shaft slips and loses a part of every way up", "calibrate",
