@@ -1,7 +1,8 @@
-"""Accepts the connections of a server: other users stay outside, and strangers cost little and end in no traceback.
+"""Accepts the connections of a server. Other users stay outside; strangers cost little and cause no traceback.
 
-uvicorn takes 0.2 ms for a connection before it says a word, so it gets one when it has said something, and only so
-many a second: a flood of them delays new pages, but neither those that are open nor the motors' lease.
+uvicorn spends 0.2 ms on a new connection, even on a silent one. So it is handed only connections that have sent
+something, and only so many a second. A flood of connections delays new pages, but neither open ones nor the motors'
+lease.
 """
 
 from __future__ import annotations
@@ -20,21 +21,21 @@ from greywhale.base import system
 from greywhale.dashboard.bucket import Bucket
 from greywhale.dashboard.door import Door
 
-# Connections that the system keeps until they are accepted, which costs nothing here. Where there is room for fewer, a
-# new page would have to try again, a second later.
+# Connections that the system keeps until they are accepted, at no cost here. With fewer, a new page would have to try
+# again a second later.
 BACKLOG = 4096
-# Connections that are accepted. So one that says something at once is heard before those behind it push it out.
+# Connections to accept. At this pace a connection that sends something at once is heard before later ones push it out.
 ACCEPTED_A_SECOND, ACCEPTED_AT_ONCE = 1000.0, 16.0
-# What uvicorn gets: a program may make a connection for each of its requests, of which 100 a second are answered.
+# Connections to hand to uvicorn: a program may open one for each of its requests, of which 100 a second are answered.
 HANDED_A_SECOND, HANDED_AT_ONCE = 200.0, 64.0
-_AGAIN_S = 0.01
-WITHOUT_DESCRIPTORS_S = 1.0
-_ROOT = 0
-_USED_UP = (errno.EMFILE, errno.ENFILE, errno.ENOBUFS, errno.ENOMEM)
+_AGAIN_S = 0.01  # until the next try, while the door or a bucket has no room
+WITHOUT_DESCRIPTORS_S = 1.0  # until the next try, while the system has no descriptors: some are closed within seconds
+_ROOT = 0  # user id
+_NO_DESCRIPTORS = (errno.EMFILE, errno.ENFILE, errno.ENOBUFS, errno.ENOMEM)
 
 
 class Arrival:
-    """One connection, silent at first; then uvicorn has it."""
+    """One connection. uvicorn gets it when it has sent something."""
 
     def __init__(self, connection: socket.socket) -> None:
         self.connection = connection
@@ -68,7 +69,7 @@ class Arrival:
             self.connection.close()
 
     def has_said(self) -> bytes | None:
-        """The first byte of what has come; none where the other side has closed it, None where nothing is there yet."""
+        """The first byte that has come, left unread; b"" if the other side has closed, None while nothing has come."""
         try:
             return self.connection.recv(1, socket.MSG_PEEK)
         except BlockingIOError:
@@ -77,7 +78,7 @@ class Arrival:
             return b""
 
     async def hand(self, server: uvicorn.Server) -> None:
-        """Let uvicorn have it."""
+        """Hand it to uvicorn."""
         self._handed = True
 
         def make() -> asyncio.Protocol:
@@ -91,13 +92,13 @@ class Arrival:
 
 
 class Server(uvicorn.Server):
-    """uvicorn behind a door."""
+    """A uvicorn server that accepts only connections for which its door has room."""
 
     def __init__(self, config: uvicorn.Config, door: Door) -> None:
         super().__init__(config)
         self._door = door
         self._listener: socket.socket | None = None
-        self._reserve = -1  # a descriptor to spend where there are no others
+        self._reserve = -1  # a descriptor to free when the system has no others left
         self._spoken: deque[Arrival] = deque()
         self._accepted = Bucket(ACCEPTED_A_SECOND, ACCEPTED_AT_ONCE)
         self._handed = Bucket(HANDED_A_SECOND, HANDED_AT_ONCE)
@@ -130,14 +131,14 @@ class Server(uvicorn.Server):
             asyncio.get_running_loop().add_reader(self._listener, self._accept, self._listener)
 
     def _rest(self, pause_s: float) -> None:
-        """Let those wait that are not accepted yet."""
+        """Accept no connection during a pause."""
         loop = asyncio.get_running_loop()
         if self._listener is not None:
             loop.remove_reader(self._listener)
             loop.call_later(pause_s, self._listen)
 
     def _accept(self, listener: socket.socket) -> None:
-        """Take the connection that waits first: one alone, as only of it it is known that room must be made for it."""
+        """Accept the first waiting connection, and only that one: the door has made room for one."""
         if not (self._door.make_room() and self._accepted.take()):
             self._rest(_AGAIN_S)
             return
@@ -146,7 +147,7 @@ class Server(uvicorn.Server):
         except (BlockingIOError, ConnectionAbortedError):
             return
         except OSError as error:
-            if error.errno not in _USED_UP:
+            if error.errno not in _NO_DESCRIPTORS:
                 raise
             self._door.tell("the system has no descriptors left for connections; new pages wait for some.")
             if not self._door.keep_fewer():
@@ -159,10 +160,10 @@ class Server(uvicorn.Server):
         connection.setblocking(False)
         arrival = Arrival(connection)
         self._door.enter(address, arrival)
-        self._hear(arrival)  # who waited to be accepted has said something meanwhile
+        self._hear(arrival)  # it may have sent something while it waited
 
     def _spend_reserve(self, listener: socket.socket) -> None:
-        """Close the connection that waits first, and let those behind it wait."""
+        """Close the first waiting connection by means of the spare descriptor, and let the others wait."""
         os.close(self._reserve)
         with contextlib.suppress(OSError):
             listener.accept()[0].close()
@@ -170,7 +171,7 @@ class Server(uvicorn.Server):
         self._rest(WITHOUT_DESCRIPTORS_S)
 
     def _hear(self, arrival: Arrival) -> None:
-        """Take what a connection has said, or its end; else wait for either."""
+        """Note that a connection has sent something, or has ended; else wait for either."""
         loop = asyncio.get_running_loop()
         loop.remove_reader(arrival.connection)
         said = arrival.has_said()
@@ -185,7 +186,7 @@ class Server(uvicorn.Server):
             arrival.close()
 
     def _hand(self) -> None:
-        """Let uvicorn have those that have said something, the first of them first; others wait meanwhile."""
+        """Hand the connections that have sent something to uvicorn in their order; new ones wait meanwhile."""
         loop = asyncio.get_running_loop()
         while self._spoken and (self._spoken[0].gone or self._handed.take()):
             arrival = self._spoken.popleft()
@@ -199,10 +200,10 @@ class Server(uvicorn.Server):
 
 
 def is_foreign(connection: socket.socket) -> bool:
-    """Whether another user is at the other end, as far as the system tells.
+    """True if another user is at the other end, as far as the system tells.
 
-    Root gets in, as it may read this process anyway, and forwards ports for others (containers). Where root itself
-    serves, its browser is somebody else's.
+    Root gets in: it may read this process anyway, and forwards ports for others (containers). Where root itself serves,
+    its browser may run as another user, so nobody is foreign.
     """
     user = system.user()
     if user == _ROOT:

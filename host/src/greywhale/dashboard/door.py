@@ -1,4 +1,4 @@
-"""Who is connected: those who have shown the token, and strangers, of whom few may stay, and not for long.
+"""Knows all connections: those that have shown the token, and strangers, of whom few may stay, and not for long.
 
 A stranger can neither keep the owner out nor use up the server's descriptors: when one too many comes, an older one
 is closed, or the new one waits until one has had its time.
@@ -12,15 +12,15 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol
 
-# A page that loads opens six connections without the token, and some browsers a few more for later.
+# A page that loads opens six connections without the token, and some browsers open a few more for later use.
 MOST_STRANGERS = 64
-FEWEST_STRANGERS = 6  # also where descriptors are few
-MOST_KNOWN = 64  # a page has two, and a moment's more for what it asks
-# A browser that opens a connection beforehand may use it seconds later.
+FEWEST_STRANGERS = 6  # one loading page; also where the system has few descriptors
+MOST_KNOWN = 64  # a page has two, and more for a moment while it asks for something
+# A stranger is closed after this time: a browser that opens a connection beforehand uses it within seconds.
 PATIENCE_S = 10.0
-# In this time a stranger that asks for something gets it, and is not closed for another one.
+# A stranger that asks for something has this time to get it, in which it is not closed for another one.
 GRACE_S = 2.0
-# In this time a stranger that has just come in says what it wants: a browser does so within a millisecond.
+# A stranger that has just come in has this time to say what it wants: a browser takes less than a millisecond.
 MOMENT_S = 0.05
 
 Address = tuple[str, int]
@@ -32,15 +32,15 @@ class Visitor(Protocol):
 
     @property
     def gone(self) -> bool:
-        """Whether it is closed, or about to be."""
+        """True if it is closed, or about to be."""
 
     @property
     def waits(self) -> bool:
-        """Whether it has said something, and has not got a whole answer yet."""
+        """True if it has said something, and has not got a whole answer yet."""
 
     @property
     def busy(self) -> bool:
-        """Whether it has asked for something, of which not all has gone out yet."""
+        """True if it has asked for something, of which not all has gone out yet."""
 
     def close(self) -> None:
         """Close it at once, whatever was still to be sent."""
@@ -67,8 +67,10 @@ class Door:
         self._told: set[str] = set()
 
     def make_room(self) -> bool:
-        """Whether one more may enter. Of too many strangers the oldest is closed that waits for no answer, or else the
-        oldest of all; but none that has not had its time.
+        """Return True if one more may enter; where strangers are too many, close one of them for it.
+
+        Closed is the oldest that has had a moment to say something and waits for no answer; if all wait, the oldest
+        that has had its time. While there is neither, the new one has to wait.
         """
         self._forget_gone()
         if len(self._strangers) < self._most_strangers:
@@ -76,20 +78,23 @@ class Door:
         self.tell(f"more than {self._most_strangers} connections show no token; the oldest of them are closed.")
         now_s = self._clock()
         strangers = self._strangers.values()
-        idle = [one.visitor for one in strangers if one.since_s <= now_s - MOMENT_S and not one.visitor.waits]
-        served = [one.visitor for one in strangers if one.since_s <= now_s - GRACE_S]
-        if not (closed := [*idle, *served][:1]):
+        waiting_for_nothing = [
+            one.visitor for one in strangers if one.since_s <= now_s - MOMENT_S and not one.visitor.waits
+        ]
+        here_long_enough = [one.visitor for one in strangers if one.since_s <= now_s - GRACE_S]
+        may_go = [*waiting_for_nothing, *here_long_enough]
+        if not may_go:
             return False
-        closed[0].close()
+        may_go[0].close()
         self._forget_gone()
         return True
 
     def enter(self, address: Address, visitor: Visitor) -> None:
-        """A connection begins, as a stranger's."""
+        """Take in a new connection, as a stranger."""
         self._strangers[address] = _Stranger(visitor, self._clock())
 
     def keep_fewer(self) -> bool:
-        """Half as many strangers may stay from now on, for the system has no descriptors left; False where few do."""
+        """Let half as many strangers stay from now on, as the system has no descriptors left; False where few do."""
         self._forget_gone()
         self._most_strangers = max(FEWEST_STRANGERS, len(self._strangers) // 2)
         too_many = list(self._strangers.values())[: -self._most_strangers]
@@ -98,7 +103,7 @@ class Door:
         return bool(too_many)
 
     def welcome(self, address: Address) -> bool:
-        """It has shown the token; False where too many others have."""
+        """Make a stranger that has shown the token a known one; False where too many others are known."""
         stranger = self._strangers.get(address)
         if stranger is None:
             return True
@@ -110,7 +115,7 @@ class Door:
         return True
 
     def is_there(self, address: Address) -> bool:
-        """Whether this stranger is still connected."""
+        """True if this stranger is still connected."""
         stranger = self._strangers.get(address)
         return stranger is not None and not stranger.visitor.gone
 
@@ -123,12 +128,12 @@ class Door:
                 stranger.visitor.close()
 
     def close_strangers(self) -> None:
-        """Nobody waits for them any more."""
+        """Close all strangers, at the server's end."""
         for stranger in self._strangers.values():
             stranger.visitor.close()
 
     def tell(self, sentence: str) -> None:
-        """A line in the log, once: whoever comes in vain may come again a thousand times a second."""
+        """Write a line into the log, once: a client that is refused may come again a thousand times a second."""
         if sentence not in self._told:
             self._told.add(sentence)
             logger.warning(sentence)
