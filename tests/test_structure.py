@@ -1,4 +1,4 @@
-"""How the package is built: imports point one way, and each thing that must have one owner has one."""
+"""The package's build: imports point one way, what must have one owner has it, docstrings say what things are."""
 
 from __future__ import annotations
 
@@ -29,6 +29,13 @@ TWINS = {
     *("tuner/wolf_whale.ts", "views/calibrate/motors.ts", "views/calibrate/solve.ts", "views/calibrate/sweep.ts"),
     "views/calibrate/words.ts",
 }
+# A docstring says what a thing is or does; one that begins with such a word describes it from outside, as a question.
+QUESTIONS = re.compile(r"(What|Whether|How|Where|Which|Who|Whose|When|Why|The same)\b")
+# Rooms and files of the package whose docstrings are still to be rewritten.
+WITH_QUESTIONS = (
+    *("adapt/", "commission/", "identify/", "measure/", "reproduce/", "tune/", "cli/catalogue.py", "pictures/ranks.py"),
+    *("optimise/comparison.py", "optimise/nevergrad_choice.py", "optimise/significance.py"),
+)
 # Extension modules whose names begin with an underscore. Both are rooms of their own with public classes and functions.
 EXTENSIONS = {"_native", "_board"}
 
@@ -171,7 +178,7 @@ def test_each_thing_has_its_owner(word: str, owner: str) -> None:
 
 
 def is_private(name: str) -> bool:
-    """Whether a dotted name goes through a private one; dunders, the extension modules and os._exit are none."""
+    """True if a dotted name goes through a private one; dunders, the extension modules and os._exit are none."""
     parts = set(name.split(".")) - EXTENSIONS - {"_exit"}
     return any(part.startswith("_") and not part.startswith("__") for part in parts)
 
@@ -202,3 +209,22 @@ def test_tests_use_what_is_public() -> None:
         for line, name in private_uses(ast.parse(path.read_text(encoding="utf-8")))
     }
     assert uses == set()
+
+
+def docstrings(path: Path) -> Iterator[tuple[str, str]]:
+    """The name and the docstring of a module, and of each class and function in it; "" for none."""
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef):
+            yield getattr(node, "name", "the module"), ast.get_docstring(node) or ""
+
+
+def test_docstrings_say_what_a_thing_is_or_does() -> None:
+    package = SOURCE / "greywhale"
+    rooms = {path: str(path.relative_to(package)) for path in package.rglob("*.py")}
+    assert [
+        f"{room}: {name}: {text.splitlines()[0]}"
+        for path, room in rooms.items()
+        if not room.startswith(WITH_QUESTIONS)
+        for name, text in docstrings(path)
+        if QUESTIONS.match(text)
+    ] == []

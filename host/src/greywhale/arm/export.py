@@ -68,7 +68,7 @@ def urdf(parameters: ArmParameters) -> str:
 
 
 def _add_rod(link: xml.Element, body: _Body) -> None:
-    """The same cylinder to look at and to bump into; a URDF's lies along z."""
+    """Add a cylinder both to look at and to bump into; a URDF's lies along z."""
     tilt = (-math.pi / 2, 0.0, 0.0) if body.end[1] else (0.0, math.pi / 2, 0.0)
     for use in ("visual", "collision"):
         shape = xml.SubElement(link, use)
@@ -154,7 +154,7 @@ def _add_motor(body: xml.Element, actuators: xml.Element, parameters: ArmParamet
 
 
 def _left_out(parameters: ArmParameters, *more: str) -> str:
-    """What the file cannot say of this arm, a phrase for each thing that the arm has."""
+    """A phrase for each thing that the arm has and the file cannot hold."""
     joints = [parameters.joint[index] for index in parameters.joints_in_use]
     pots = parameters.follower_pots.joint
     found = {

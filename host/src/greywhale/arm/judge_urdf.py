@@ -28,7 +28,7 @@ _PRODUCTS = ((0, 1, "ixy"), (0, 2, "ixz"), (1, 2, "iyz"))
 
 
 def why_no_body(inertia: Floats) -> str:
-    """Why no body has this inertia (3, 3), kg m², about its centre of mass; "" where one may."""
+    """The reason why no body has this inertia (3, 3), kg m², about its centre of mass; "" where one may."""
     own = np.diag(inertia)
     moments = np.linalg.eigvalsh(inertia)
     slack = ROUNDING * max(float(np.abs(moments).max()), 0.0)

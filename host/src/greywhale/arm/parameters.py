@@ -78,7 +78,7 @@ class Link(Table):
 
 
 class Tip(Table):
-    """What the arm carries at the end of link 3."""
+    """The load that the arm carries at the end of link 3."""
 
     mass: Annotated[float, Field(ge=0, le=1e4)] = 0.0  # kg
 
@@ -243,7 +243,7 @@ class ArmParameters(Table):
         return equation(**(dict(motor) | {"resistance": motor.resistance + self.drive.resistance}))
 
     def native(self) -> _native.ArmParameters:
-        """The same numbers for the C++ plant."""
+        """These parameters for the C++ plant."""
         return _native.ArmParameters(
             links=[_native_link(link) for link in self.link],
             tip_mass=self.tip.mass,
@@ -274,7 +274,7 @@ def _native_link(link: Link) -> _native.Link:
 
 
 def with_usual_noise(arm: ArmParameters) -> ArmParameters:
-    """The same arm with the noise of a usual potentiometer on every one that has none."""
+    """A copy of the arm with the noise of a usual potentiometer on every one that has none."""
     banks = {}
     for name in ("leader_pots", "follower_pots"):
         bank = getattr(arm, name)

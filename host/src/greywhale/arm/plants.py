@@ -51,7 +51,7 @@ def plant_row(parameters: ArmParameters) -> Plants:
 
 
 def rigid_joints(plants: Plants) -> npt.NDArray[np.bool_]:
-    """Which joints are not in use, (4,) or (n, 4): those without room between their stops."""
+    """True for each joint that is not in use, (4,) or (n, 4): one without room between its stops."""
     return plants[..., columns("stop_max")] <= plants[..., columns("stop_min")]
 
 

@@ -1,4 +1,4 @@
-"""What an arm can lift and how fast it is, before anybody builds on it."""
+"""The load that an arm can lift and its speed, before anybody builds on it."""
 
 from __future__ import annotations
 

@@ -48,7 +48,7 @@ def read_chain(path: Path) -> tuple[str, list[TurningJoint]]:
 
 
 def _refuse_xacro(path: Path, robot: xml.Element) -> None:
-    """What xacro has yet to compute. A declared namespace is no sign of it: xacro leaves that in what it makes."""
+    """Refuse a file that xacro has yet to expand. A declared namespace is no sign of that: xacro leaves it there."""
     for tag in robot.iter():
         name = str(tag.tag)  # a comment's is a function
         if _XACRO in name:

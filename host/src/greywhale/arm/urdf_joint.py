@@ -53,5 +53,5 @@ class TurningJoint:
 
 
 def _parallel(mass: float, away: Floats) -> Floats:
-    """What a mass adds to an inertia about a point so far from it (Steiner)."""
+    """The inertia that a mass adds about a point so far from it (Steiner)."""
     return mass * (float(away @ away) * np.eye(3) - np.outer(away, away))

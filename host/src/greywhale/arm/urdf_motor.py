@@ -55,7 +55,7 @@ def with_guessed_motors(joints: Sequence[TurningJoint], arm: ArmParameters) -> l
 
 
 def remarks_on(number: int, given: TurningJoint, used: TurningJoint, sign: float, offset: float) -> list[str]:
-    """What was guessed for a joint or left out, from what the URDF gives and what was used instead."""
+    """Remarks on a joint: values that were guessed or left out, given the URDF's own and those used instead."""
     name, told = f"joint {cut(given.name)}", []
     if not given.effort:
         told.append(

@@ -1,1 +1,1 @@
-"""What everything else stands on: errors, files on the disk, processes, repeated studies."""
+"""The ground floor of the package: errors, files on the disk, processes, repeated studies."""

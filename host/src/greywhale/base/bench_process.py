@@ -22,7 +22,7 @@ ANSWER_WAIT_S = 60.0  # the machine may be busy; a healthy bench answers in mill
 
 
 class RunningBench(Protocol):
-    """What is needed of a bench, in a process of its own or in this one (greywhale_sim.lockstep)."""
+    """A running bench, in a process of its own or in this one (greywhale_sim.lockstep)."""
 
     @property
     def port(self) -> str: ...
@@ -55,7 +55,7 @@ class BenchProcess(Closing):
 
     @property
     def exit_code(self) -> int | None:
-        """How the bench ended; None while it runs."""
+        """The bench's exit code; None while it runs."""
         return self._process.poll()
 
     def command(self, text: str) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""What is closed at the end of a `with`."""
+"""Base class of context managers with close(): a `with` closes them at its end."""
 
 from __future__ import annotations
 

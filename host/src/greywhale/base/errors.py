@@ -32,7 +32,7 @@ class UserError(Exception):
 
 
 class BadUsage(UserError):
-    """What was asked for is wrong, and nothing was done."""
+    """The request was wrong, and nothing was done."""
 
     def __init__(self, message: str) -> None:
         super().__init__(message, BAD_USAGE)

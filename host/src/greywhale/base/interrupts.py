@@ -36,7 +36,7 @@ def hold_back(*numbers: signal.Signals) -> Iterator[None]:
 
 
 def _is_interrupted() -> bool:
-    """Whether the caller cleans up after a Ctrl-C."""
+    """True while the caller cleans up after a Ctrl-C."""
     error = sys.exception()
     while error is not None and not isinstance(error, KeyboardInterrupt):
         error = error.__context__

@@ -25,7 +25,7 @@ def start(
 
 @contextlib.contextmanager
 def safe_path() -> Iterator[None]:
-    """The same for what others start in this context, such as multiprocessing, which asks for no environment."""
+    """Keep what others start in this context (multiprocessing) from importing modules of the current folder."""
     before = os.environ.get(_SAFE_PATH)
     os.environ[_SAFE_PATH] = "1"
     try:

@@ -14,7 +14,7 @@ VARIABLE = "GREYWHALE_RUNTIME_DIR"
 
 
 def runtime_directories() -> list[Path]:
-    """Where the folder may be. It follows from the user alone: a cron job and a terminal have other environments."""
+    """The folders that may be used. They follow from the user alone: a cron job has another environment."""
     given = os.environ.get(VARIABLE)
     if given:
         return [Path(given)]
@@ -49,7 +49,7 @@ def private_runtime_directories() -> list[Path]:
 
 
 def _why_not_private(folder: Path) -> str | None:
-    """What keeps a folder from being this user's alone. A link is no folder: its owner could turn it elsewhere."""
+    """The reason why a folder is not this user's alone. A link is no folder: its owner could turn it elsewhere."""
     try:
         found = folder.lstat()
     except OSError as error:

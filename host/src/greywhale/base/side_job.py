@@ -26,7 +26,7 @@ class SideJob(Closing, Generic[Result]):
         self._future: Future[Result] = self._pool.submit(work, self._tell)
 
     def result(self) -> Result:
-        """What the work returned, or the error that it raised."""
+        """Return the work's result, or raise its error."""
         self._awaited.set()
         while not self._future.done():
             wait([self._future], CTRL_C_S)

@@ -1,4 +1,4 @@
-"""Where operating systems differ: all that does is here, so that a port to another one is a matter of trying it.
+"""The differences between operating systems, all of them, so that a port to another one is a matter of trying it.
 
 Linux is tried. Of Windows and macOS only the names and types are checked (`make lint`). What they do in another way, or
 not at all, is said at each function. The simulated bench needs a pseudo-terminal, which Windows does not have.
@@ -164,7 +164,7 @@ def give_way(niceness: int) -> None:
 
 
 def in_foreground() -> bool:
-    """Whether a terminal's Ctrl-C reaches this process."""
+    """True if a terminal's Ctrl-C reaches this process."""
     try:
         with open("CONIN$" if sys.platform == "win32" else "/dev/tty", "rb", buffering=0) as terminal:
             return sys.platform == "win32" or os.tcgetpgrp(terminal.fileno()) == os.getpgrp()
@@ -173,7 +173,7 @@ def in_foreground() -> bool:
 
 
 def has_typed(stream: TextIO, wait: bool) -> bool:
-    """Whether something can be read; `wait` until it can. On Windows a key is enough: reading waits for its line."""
+    """True if something can be read; `wait` until it can. On Windows a key is enough: reading waits for its line."""
     if sys.platform == "win32":
         return wait or not stream.isatty() or msvcrt.kbhit()
     return bool(select.select([stream], [], [], None if wait else 0.0)[0])
@@ -229,7 +229,7 @@ def owner_of(end: tuple[str, int], other: tuple[str, int]) -> int | None:
 
 
 def owner_question(end: tuple[str, int], other: tuple[str, int]) -> bytes:
-    """What Linux is asked for that."""
+    """The message that asks Linux for the owner of a connection."""
     first, second = (socket.inet_aton(host).ljust(16, b"\0") for host, _ in (end, other))
     wanted = _WANTED.pack(socket.AF_INET, socket.IPPROTO_TCP, 0, 0, _ALL)
     asked = wanted + _ENDS.pack(end[1], other[1], first, second) + _ANY.pack(0, _ALL, _ALL)
@@ -285,7 +285,7 @@ def exists(port: str) -> bool:
 
 
 def may_open(port: str) -> bool:
-    """Whether this user has the right to; on Windows everybody has."""
+    """True if this user has the right to; on Windows everybody has."""
     return sys.platform == "win32" or os.access(port, os.R_OK | os.W_OK)
 
 
@@ -301,7 +301,7 @@ def group_of(port: str) -> str:
 
 
 def is_own_terminal(port: str) -> bool:
-    """Whether a person types there: to open it as a port would spoil it."""
+    """True if a person types there: to open it as a port would spoil it."""
     if sys.platform == "win32":
         return False
     device = os.stat(port).st_rdev
@@ -311,7 +311,7 @@ def is_own_terminal(port: str) -> bool:
 
 
 def open_errno(error: OSError) -> int | None:
-    """Why pyserial could not open a port. On Windows its words tell, and access is denied where a port is in use."""
+    """The errno of a port that pyserial could not open. Windows says it in words: access denied if it is in use."""
     if sys.platform != "win32":
         return error.errno
     told = re.search(r"Error\((\d+),", str(error))
@@ -320,7 +320,7 @@ def open_errno(error: OSError) -> int | None:
 
 
 def keeps_dtr(line: io.RawIOBase) -> bool:
-    """Whether DTR stays up when an open port is closed; on Windows it falls."""
+    """True if DTR stays up when an open port is closed; on Windows it falls."""
     if sys.platform == "win32":
         return False
     else:
@@ -340,7 +340,7 @@ def keep_dtr(line: io.RawIOBase, up: bool) -> None:
 
 
 def line_settings(line: io.RawIOBase) -> tuple[int, ...] | None:
-    """How an open port is set: flags and speeds. None where the system has hung it up, and on Windows."""
+    """The settings of an open port: flags and speeds. None where the system has hung it up, and on Windows."""
     if sys.platform == "win32":
         return None
     else:

@@ -22,7 +22,7 @@ Progress = Callable[[str, float], None]  # takes what is being done, and the sha
 
 
 class NotedProgress(Protocol):
-    """The same with a note, such as the best cost."""
+    """Progress with a note, such as the best cost."""
 
     def __call__(self, what: str, fraction: float, note: str = "") -> None: ...
 

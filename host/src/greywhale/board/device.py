@@ -126,7 +126,7 @@ class Device:
 
     @property
     def restarted(self) -> bool:
-        """Whether opening the port restarted the board (False: it runs on from the session before)."""
+        """True if opening the port restarted the board (False: it runs on from the session before)."""
         return self._transport.restarted
 
     @property
@@ -205,7 +205,7 @@ class Device:
 
     @contextlib.contextmanager
     def leading(self, lease_ms: int) -> Iterator[schema.LeadReply]:
-        """The same with this host in the leader's place."""
+        """Enable the motors with this host in the leader's place."""
         begun: list[schema.LeadReply] = []
         with self._motors_on(lambda: begun.append(self.lead(lease_ms))):
             yield begun[0]
@@ -301,7 +301,7 @@ class Device:
         self._transport.write(stop_message(_UNASKED))
 
     def _send_clutch(self, action: str) -> None:
-        """The same for the clutch: engage or disengage."""
+        """Ask the clutch to engage or disengage."""
         self._send(schema.ClutchRequest(schema.ClutchAction[action.upper()]), _UNASKED)
 
     def _send(self, request: Request[Any], sequence: int) -> None:

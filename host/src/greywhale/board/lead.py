@@ -152,14 +152,14 @@ class Leading:
             room -= 1
 
     def _points_left(self, tick: int) -> int:
-        """How many points the board has yet to play, by its last answer and the time since."""
+        """The number of points that the board has yet to play, by its last answer and the time since."""
         return self._waiting - (tick - self._heard) // POINT_TICKS
 
     def _note_progress(self, tick: int) -> None:
         self._since, self._since_s = tick, self._device.clock()
 
     def _waited(self, tick: int, ticks: int) -> bool:
-        """Whether the last progress is so long ago, by the board and by this machine."""
+        """True if the last progress is so long ago, by the board and by this machine."""
         return tick - self._since > ticks and 1000 * (self._device.clock() - self._since_s) > ticks
 
     def _hear(self, tick: int) -> None:

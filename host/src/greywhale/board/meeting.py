@@ -1,4 +1,4 @@
-"""Where a session and those who want to stop it meet: at a name that follows from the user and the port alone.
+"""The meeting place of a session and those who want to stop it: a name that follows from the user and the port alone.
 
 Neither the environment nor a folder counts, so a notebook, a cron job and `su -` all lead to the same place. The name
 is one of Linux's abstract sockets: it is no file, which somebody could remove, and it ends with its process. It also
@@ -41,12 +41,12 @@ class Peer(NamedTuple):
 
 
 def peer_of(connection: socket.socket) -> Peer:
-    """Who is at the other end, by the system's word."""
+    """The user at the other end, by the system's word."""
     return Peer(*system.peer_of(connection))
 
 
 def names_of(device: str) -> list[str]:
-    """Where this user's session on a device may listen."""
+    """The names at which this user's session on a device may listen."""
     return [f"\0greywhale/{system.user()}/{device}/{number}" for number in range(NAMES)]
 
 
@@ -135,7 +135,7 @@ def _connections(device: str) -> Iterator[tuple[socket.socket, Peer]]:
 
 
 class Clients:
-    """Who connected to a listener. None of them is waited for."""
+    """The clients of a listener. None of them is waited for."""
 
     def __init__(self, listener: socket.socket) -> None:
         self._listener = listener
@@ -145,11 +145,11 @@ class Clients:
         self._answered: list[socket.socket] = []
 
     def descriptors(self) -> list[int]:
-        """What to watch for something to hear."""
+        """The descriptors to watch for something to hear."""
         return [one.fileno() for one in (self._listener, *self._silent)]
 
     def hear(self, ready: Container[int]) -> bool:
-        """Whether one of those who are `ready` asks for a stop; also let a newcomer in."""
+        """True if one of those who are `ready` asks for a stop; also let a newcomer in."""
         stops = False
         for client in [client for client in self._silent if client.fileno() in ready]:
             self._silent.remove(client)
@@ -181,7 +181,7 @@ class Clients:
 
 
 def _word(client: socket.socket) -> str:
-    """What a client asks for, empty where that is unknown; who asks for a stop is told at once that it was heard."""
+    """A client's request, empty where that is unknown; a request for a stop is confirmed at once."""
     try:
         word = client.recv(16).partition(b"\n")[0].decode("ascii", "replace")
     except OSError:

@@ -1,4 +1,4 @@
-"""What the potentiometers read while the motors are off: an open or shorted wire is named before it is a fault."""
+"""Reads the potentiometers while the motors are off: an open or shorted wire is named before it is a fault."""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ def pots_there(table: ParameterTable) -> tuple[int, ...]:
 
 
 def read_counts(device: Device, table: ParameterTable, samples: int) -> NDArray[np.float64]:
-    """What the converter reads, (samples, 8), a row a millisecond, with the fractions that the low-pass leaves.
+    """Readings of the converter, (samples, 8), a row a millisecond, with the fractions that the low-pass leaves.
 
     `table` runs on the board. Telemetry is off afterwards.
     """

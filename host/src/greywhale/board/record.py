@@ -68,7 +68,7 @@ class LedRecordingFacts(RecordingFacts):
 
 @dataclass(frozen=True)
 class Recording:
-    """What was recorded: rows in the log, samples that the link lost, duration by the board's clock.
+    """A recording's outcome: rows in the log, samples that the link lost, duration by the board's clock.
 
     `gaps` are those in which the port was away: when each began and its length, s.
     """

@@ -1,4 +1,4 @@
-"""What holds a port listens here, so that `greywhale stop` in another terminal can end it without opening the port.
+"""Listens while a port is held, so that `greywhale stop` in another terminal can end it without opening the port.
 
 Whoever connects asks for a stop: the thread that listens sends it to the board at once, then ends the main thread as
 Ctrl-C does. From then on this session starts no motor. The answer goes out when the board has confirmed that its motors
@@ -91,7 +91,7 @@ class Session:
 
     @property
     def waiting(self) -> bool:
-        """Whether somebody asked for a stop and has no answer yet."""
+        """True if somebody asked for a stop and has no answer yet."""
         return self.asked and not self._confirmed.is_set()
 
     def attach(self, send_stop: Callable[[], None], send_clutch: Callable[[str], None]) -> None:
@@ -278,7 +278,7 @@ def ask_for_clutch(port: str, action: str, heard_s: float = HEARD_S) -> int | No
 
 
 def _key(port: str) -> str:
-    """What is the same for all names of a port."""
+    """The key that all names of a port share."""
     return device_of(port) or os.path.realpath(port)
 
 

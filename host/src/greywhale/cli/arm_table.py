@@ -1,4 +1,4 @@
-"""What an arm can lift and how fast it is, for a person and for a program."""
+"""Prints the load that an arm can lift and its speed, for a person and for a program."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ def notes(found: Summary, left_out: tuple[str, ...] = ()) -> list[str]:
 
 
 def advice(found: Summary) -> str:
-    """What a board as shipped needs for an arm whose motors have much to hold; "" where it needs nothing."""
+    """Advice for a board as shipped if the arm's motors have much to hold; "" where it needs nothing."""
     hold = max(one.hold_v for one in found.joints)
     shipped = ParameterTable.defaults().physical("stall_volts")
     if hold <= MUCH_TO_HOLD * shipped or any(one.share >= 1.0 for one in found.joints):
@@ -66,7 +66,7 @@ def advice(found: Summary) -> str:
 
 
 def lifting(found: Summary) -> Lifting:
-    """The same for a program."""
+    """The table's numbers for a program."""
     joints: list[JointFacts] = [
         {
             "joint": one.joint,

@@ -1,4 +1,4 @@
-"""What Tab offers where no file is meant: parameters, ports, arms and controllers that come with greywhale."""
+"""Suggestions for Tab where no file is meant: parameters, ports, arms and controllers that come with greywhale."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ def parameters(context: Context, parameter: Parameter, incomplete: str) -> Items
 
 
 def settings(context: Context, parameter: Parameter, incomplete: str) -> Items:
-    """The same before the value: joint0.kp=."""
+    """Suggest names of parameters with a = for the value: joint0.kp=."""
     return [CompletionItem(f"{one.value}=", help=one.help) for one in parameters(context, parameter, incomplete)]
 
 

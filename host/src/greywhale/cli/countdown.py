@@ -22,7 +22,7 @@ yes_option = click.option("--yes", "-y", is_flag=True, help="Move the arm withou
 
 
 def prepare_motion(port: str, yes: bool) -> Callable[[], None]:
-    """What to call just before the arm on `port` moves by itself; refused at once where nobody would be warned."""
+    """The warning to call just before the arm on `port` moves by itself; BadUsage at once where nobody would see it."""
     if output.watcher is not None:
         return warn_page
     if yes or is_bench(port):

@@ -116,7 +116,7 @@ class Lines:
 
 @contextlib.contextmanager
 def shown(begins: bool) -> Iterator[Callable[..., object]]:
-    """What takes the reports of a verb and shows them, on whatever stderr is."""
+    """Show the reports of a verb on stderr, a terminal or not."""
     console = Console(stderr=True)
     running = Running()
     if sys.stderr.isatty() and console.is_terminal and not console.is_dumb_terminal:

@@ -33,7 +33,7 @@ ON_WINDOWS = "use WSL 2 (docs/your-arm.md), or the page in the browser, which ha
 
 
 class Failure(TypedDict):
-    """What any verb prints with --json when it fails."""
+    """The JSON that any verb prints with --json when it fails."""
 
     error: str  # one sentence: what is wrong, and what to do
     exit_code: Annotated[int, ("enum", [FAILED, BAD_USAGE, INTERRUPTED])]

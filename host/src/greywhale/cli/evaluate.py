@@ -131,7 +131,7 @@ def _text(log: Log, evaluation: Evaluation, warnings: list[str]) -> str:
 
 
 def _covered(evaluation: Evaluation) -> str:
-    """How much was measured, and of how much, where that is more than rounding."""
+    """The measured time, and of how much where it is not all of the log."""
     measured, span = f"{evaluation.duration_s:.2f} s", f"{evaluation.span_s or 0.0:.2f} s"
     return measured if measured == span else f"{measured} of the log's {span}"
 

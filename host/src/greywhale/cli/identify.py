@@ -100,7 +100,7 @@ def command(
 
 
 def _read(path: Path, notes: list[str]) -> Log:
-    """What is used of a log; a note says so where that is not all of it."""
+    """The part of a log that is used; a note says so where that is not all of it."""
     whole = read_log(path)
     used = informative(whole)
     if used is not whole:

@@ -158,7 +158,7 @@ def _text(device: Device, hello: schema.HelloReply, status: schema.StatusReply, 
 
 
 def _source(hello: schema.HelloReply, status: schema.StatusReply) -> str:
-    """Where the parameters came from when the board started, and whether it stored some since."""
+    """The source of the parameters at the board's start, and a clause if a set was stored since."""
     stored = hello.param_source is schema.ParamSource.DEFAULTS and status.saves > 0
     return f"they came from {hello.param_source.description}{'; a set was stored since' if stored else ''}"
 

@@ -1,4 +1,4 @@
-"""What all verbs share: --json, --port, results and progress."""
+"""The options and output that all verbs share: --json, --port, results and progress."""
 
 from __future__ import annotations
 

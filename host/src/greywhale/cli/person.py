@@ -75,7 +75,7 @@ class Terminal:
         return None
 
     def agrees(self, what: str) -> bool:
-        """Whether the person says yes. A script's line does, if it does not say no."""
+        """True if the person says yes. A script's line does, if it does not say no."""
         word = ""
         while word not in ("y", "yes", *NO):
             self._forget_typed()

@@ -231,7 +231,7 @@ def _naming_every() -> Iterator[None]:
 
 
 def describe(port: str, recording: Recording) -> str:
-    """What was recorded on a port, and what may have lost some of it, where that is known."""
+    """A sentence on a recording from a port, and on the causes of lost samples, where those are known."""
     lost = f", {recording.dropped} dropped by the link" if recording.dropped else ""
     waits = slow = ""
     if isinstance(recording, LedRecording):

@@ -51,7 +51,7 @@ def command(leader: Path | None, faults: tuple[str, ...], by_hand: bool, as_json
 
 
 def _hint(port: str) -> str:
-    """What a person does next, and the name of the port for all other commands."""
+    """Advice on a person's next step, with the name of the port for all other commands."""
     name = lasting_name(port)
     if name == port:  # no other program finds it by itself
         return f"now, in a second terminal: greywhale info --port {port}. Ctrl-C here ends the bench."

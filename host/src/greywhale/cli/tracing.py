@@ -64,7 +64,7 @@ def tell_command(arguments: Sequence[str]) -> None:
 
 
 def is_on_stderr() -> bool:
-    """Whether -v tells the steps there."""
+    """True if -v prints the steps there."""
     return any(isinstance(one, _Terminal) and one.level <= logging.INFO for one in ROOT.handlers)
 
 

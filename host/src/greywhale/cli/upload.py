@@ -97,7 +97,7 @@ def _margins_fail(tuning: Mapping[str, Any]) -> bool:
 
 
 def _failing(tuning: Mapping[str, Any]) -> str:
-    """Which margins do not hold: the first few, each as joint and case."""
+    """The first few margins that do not hold, each as joint and case."""
     notes = tuning.get("notes")
     failing = [str(note).partition(":")[0] for note in notes] if isinstance(notes, list) else []
     more = f" and {len(failing) - MOST_NAMED} more" if len(failing) > MOST_NAMED else ""

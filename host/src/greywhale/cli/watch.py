@@ -39,7 +39,7 @@ HEADING = ",".join(["time_s", "state", "fault", *(f"{group}_{joint}" for group i
 
 @dataclass(frozen=True)
 class Look:
-    """What is seen at one moment: angles in rad, voltages in V, converter counts of leader 0..3 and follower 0..3."""
+    """One moment: angles in rad, voltages in V, converter counts of leader 0..3 and follower 0..3."""
 
     port: str
     ticks: int  # since the first look, ms
@@ -81,7 +81,7 @@ def watch(device: Device, table: ParameterTable, seconds: float | None = None) -
 
 
 def looks(device: Device, table: ParameterTable) -> Iterator[Look]:
-    """What the board sends, without end."""
+    """Yield a look at the board's newest sample, again and again, without end."""
     fault, told, lost = schema.Fault.NONE, "", 0
     for one in stream(device, EVERY):
         lost += one.lost
@@ -120,7 +120,7 @@ def as_table(look: Look) -> str:
 
 
 def as_line(look: Look) -> str:
-    """The same as values of HEADING."""
+    """The line of a look under HEADING."""
     angles = [*look.leader, *look.follower, *(look.leader - look.follower)]
     numbers = [*(f"{angle:.6f}" for angle in angles), *(f"{volts:.3f}" for volts in look.voltage)]
     return ",".join([f"{look.ticks / 1000:.3f}", look.sample.state.key, look.sample.fault.key, *numbers])

@@ -20,7 +20,7 @@ def fit(text: str, stream: TextIO, hang: int = 0) -> str:
 
 
 def columns(stream: TextIO) -> int | None:
-    """How wide a terminal is; None for a pipe or a file."""
+    """The width of a terminal in columns; None for a pipe or a file."""
     if not stream.isatty():
         return None
     try:

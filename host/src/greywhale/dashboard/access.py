@@ -1,4 +1,4 @@
-"""What lets a page in: the server's token, and tickets, which an address carries in its place.
+"""Lets a page in: by the server's token, or by a ticket, which an address carries in its place.
 
 A browser keeps addresses: in its history, among the most visited pages, in the files from which it opens its tabs
 again. A ticket counts once and not for long, so what is kept is worth nothing.

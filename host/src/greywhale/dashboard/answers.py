@@ -1,4 +1,4 @@
-"""What the server answers to a page: of the board, the arm, the folder, the jobs and the bench of one dashboard."""
+"""The server's answers to a page: on the board, the arm, the folder, the jobs and the bench of one dashboard."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ _TICK = re.compile("[0-9]{1,10}")
 
 
 class State(TypedDict):
-    """What a page shows beside the board's own words."""
+    """The things that a page shows beside the board's own words."""
 
     greywhale: str  # version
     protocol: int
@@ -63,7 +63,7 @@ class ControllerFacts(TypedDict):
 
 
 def _is_whole(value: object) -> TypeGuard[int]:
-    """Whether it is a whole number such as a board sends; JSON's may have thousands of digits."""
+    """True if it is a whole number such as a board sends; JSON's may have thousands of digits."""
     return type(value) is int and abs(value) < 1 << 32
 
 
@@ -131,7 +131,7 @@ class Answers:
         return predict(self._arm(file), ParameterTable(tuple(raw), schema.Board.of(board)))
 
     def change_bench(self, wish: dict[str, Any], page: str) -> dict[str, Any]:
-        """What there is to change on the bench after a page's wish, as `BenchControls.change` says."""
+        """Change the bench as a page wishes, and return its controls, as `BenchControls.change` says."""
         if self.bench is None:
             raise BadUsage("no bench belongs to this dashboard; start it with --sim.")
         self.relay.require_bench(page)

@@ -13,7 +13,7 @@ from greywhale.dashboard.folder import Folder
 
 
 class BenchControls:
-    """What a page may do to the bench; any thread may call it."""
+    """The controls of the bench for a page; any thread may call them."""
 
     def __init__(self, bench: RunningBench, folder: Folder) -> None:
         self._bench = bench
@@ -21,7 +21,7 @@ class BenchControls:
         self._lock = threading.Lock()
 
     def controls(self) -> dict[str, Any]:
-        """What there is to change, between which ends."""
+        """The controls, each with its range."""
         return self._do("controls")
 
     def change(self, wish: dict[str, Any]) -> dict[str, Any]:

@@ -14,7 +14,7 @@ class Bucket:
         self._left, self._then_s = at_once, clock()
 
     def take(self) -> bool:
-        """Whether there is still one."""
+        """Take one; False if none is left."""
         now_s = self._clock()
         self._left = min(self._most, self._left + (now_s - self._then_s) * self._a_second)
         self._then_s = now_s

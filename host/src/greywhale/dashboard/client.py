@@ -59,12 +59,12 @@ class Client:
         return True
 
     def stop(self, sentence: str) -> None:
-        """The same, and a verb ends. Once: a second Ctrl-C would not let it write its files."""
+        """Refuse requests, and end a verb. Once: a second Ctrl-C would not let it write its files."""
         if self.forbid(sentence):
             self._end(sentence)
 
     def refuses(self, frame: Frame) -> str:
-        """Why it may not start the motors, in a sentence."""
+        """The reason why it may not start the motors, in a sentence."""
         if self.verb is None:
             return "" if frame.seq == self._start else "a stop came after this; ask again for the motors."
         if self._stopped is None:

@@ -45,7 +45,7 @@ class Folder:
         return whole
 
     def file(self, name: str) -> Path:
-        """The same of a name that is to be read now; one that no file can have is refused."""
+        """The path of a file that is to be read now; a name that no file can have is refused."""
         whole = self.inside(name)
         try:
             whole.is_file()
@@ -59,7 +59,7 @@ class Folder:
             self.inside(name)
 
     def files(self) -> list[FileFacts]:
-        """What verbs could take, here and one folder down, by name."""
+        """The files that verbs could take, here and one folder down, by name."""
         found: list[FileFacts] = []
         for path in sorted([*self.path.glob("*"), *self.path.glob("*/*")])[:MOST_FILES]:
             name, kind = str(path.relative_to(self.path)), ""
@@ -72,7 +72,7 @@ class Folder:
 
 
 def _leads_in_circle(path: Path) -> bool:
-    """Whether the links of a path do; from Python 3.13 on `resolve` says nothing of it."""
+    """True if the links of a path lead in a circle; from Python 3.13 on `resolve` says nothing of it."""
     try:
         path.stat()
     except OSError as error:
@@ -81,7 +81,7 @@ def _leads_in_circle(path: Path) -> bool:
 
 
 def _kind(path: Path) -> str:
-    """What a file is, "" for nothing that a verb takes."""
+    """The kind of a file, "" for one that no verb takes."""
     with contextlib.suppress(OSError, UserError, ValueError):
         if path.suffix == ".csv" and path.is_file():
             return next(_kinds_of_csv(path), "")

@@ -90,7 +90,7 @@ class Guard:
         return None
 
     async def _refusal_by_token(self, scope: Scope) -> Refusal | None:
-        """The same for what lacks the token; what has it waits for nobody else."""
+        """The refusal of a request by its token. With the token it does not wait; all others share one slow bucket."""
         if hmac.compare_digest(_token(scope), self._token):
             if not self.door.welcome(scope["client"]):
                 return 503, "Too many pages are open; close some."
@@ -107,7 +107,7 @@ class Guard:
 
 
 def _token(scope: Scope) -> bytes:
-    """What a request has as its token: in a header, or beside the subprotocol where a browser sends no header."""
+    """The token that a request shows: in a header, or beside the subprotocol where a browser sends no header."""
     if scope["type"] == "http":
         headers: dict[bytes, bytes] = dict(scope["headers"])
         return headers.get(b"x-greywhale-token", b"")
@@ -118,7 +118,7 @@ def _token(scope: Scope) -> bytes:
 
 
 def _length(scope: Scope) -> int:
-    """What a request says its body has; one that says nothing is counted while it comes."""
+    """The length of the body that a request states; one that states none is counted while it comes."""
     for name, value in scope["headers"]:
         if name == b"content-length":
             return int(value) if value.isdigit() else MOST_BODY_BYTES + 1

@@ -35,7 +35,7 @@ _PIECE = 65536
 
 
 class Facts(TypedDict):
-    """What pages are told of a job, again and again."""
+    """The facts of a job that pages get, again and again."""
 
     kind: Literal["job"]
     id: str
@@ -199,7 +199,7 @@ class Job:
         self._end()
 
     def _patience_s(self) -> float | None:
-        """How long to wait for something to read; the end of the patience with a verb that was stopped."""
+        """The time to wait for something to read (s), None for ever; kills a verb that was stopped too long ago."""
         if self._kill_at is None:
             return None
         left_s = self._kill_at - time.monotonic()
@@ -213,7 +213,7 @@ class Job:
         self._changed(self)
 
     def _take_told(self, data: bytes) -> None:
-        """What `greywhale.cli.job` tells: some of the facts."""
+        """Take the facts that `greywhale.cli.job` sends."""
         lines = self._lines("progress", data)
         for line in lines:
             self.facts.update(json.loads(line))

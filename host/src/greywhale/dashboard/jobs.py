@@ -56,7 +56,7 @@ class Jobs:
         return [job.facts for job in self._jobs]
 
     def verbs(self) -> list[VerbFacts]:
-        """What the command line has; it is asked once."""
+        """The verbs of the command line; it is asked once."""
         with self._asking:
             self._verbs = self._verbs or self._catalogue()
             return self._verbs

@@ -1,4 +1,4 @@
-"""What waits to go to one client of the board: a page, or a verb that runs for a page."""
+"""The queue of messages to one client of the board: a page, or a verb that runs for a page."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a model says about controllers that nobody has uploaded yet: a step and a reach of every joint."""
+"""Predicts how an arm follows with controllers that nobody has uploaded yet: a step and a reach of every joint."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ class Prediction(TypedDict):
 
 
 def predict(arm: ArmParameters, table: ParameterTable) -> Prediction:
-    """What the arm would do under a parameter table's controllers and settings, wired and calibrated rightly."""
+    """Predict the arm under a parameter table's controllers and settings, wired and calibrated rightly."""
     usual = ParameterTable.defaults(table.board)
     keys = {name: raw for name, raw in table.by_name().items() if not name.startswith(_CALIBRATION)}
     board = usual.with_raw({name: raw for name, raw in keys.items() if not name.endswith("motor_sign")})

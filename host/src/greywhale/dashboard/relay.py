@@ -50,7 +50,7 @@ class _Open(NamedTuple):
 
 
 class Wish(NamedTuple):
-    """What a page asked for at a time: to start a verb."""
+    """A page's request to start a verb, and its time."""
 
     page: str
     stops: int  # before it
@@ -80,7 +80,7 @@ class Relay:
 
     @property
     def link(self) -> Message:
-        """What pages are told of the board."""
+        """The facts on the board that pages get."""
         return self._link
 
     def open(self, line: Line, port: str, may_move: Callable[[], None]) -> None:
@@ -277,7 +277,7 @@ class Relay:
         return self._link["sentence"] or "no board is there yet."
 
     def _why_not(self, client: Client, frame: Frame) -> str:
-        """Why a request may not go on, in a sentence."""
+        """The reason why a request may not go on, in a sentence."""
         assert self._board is not None
         if self._board.line.clock() > self._heard_s + TOLD_S:
             return "the board is silent; perhaps it has just restarted."
@@ -302,7 +302,7 @@ class Relay:
         return ""
 
     def _refuse(self, client: Client, sentence: str, frame: Frame | None = None) -> None:
-        """What a page is told in the place of an answer; a verb asks again, as if its request had been lost."""
+        """Send a page a refusal in the place of an answer. A verb gets none, and asks again as after a loss."""
         if client.verb is None:
             which = {} if frame is None else {"seq": frame.seq, "type": frame.type}
             client.outbox.add_answer({"kind": "refused", "sentence": upper_first(sentence), **which})
@@ -395,5 +395,5 @@ class Relay:
 
 
 def _silencers(port: str) -> str:
-    """What may keep a board silent: a simulated one is no quicker than this computer."""
+    """Questions about what keeps a board silent; a simulated one is no quicker than this computer."""
     return "is its supply on" + (", or is this computer too busy to simulate it" if is_bench(port) else "")

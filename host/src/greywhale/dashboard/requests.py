@@ -20,7 +20,7 @@ MOST_WAITING = 255  # requests; clients ask again for those that a flood of them
 
 
 class Asked(NamedTuple):
-    """Whose request a number stands for; without a client it is the relay's own."""
+    """The client whose request a number stands for; without one it is the relay's own."""
 
     type: int
     client: Client | None = None
@@ -69,7 +69,7 @@ class Requests:
         self._send_next()
 
     def answered(self, frame: Frame) -> Asked | None:
-        """What a frame of the board answers, if anything; the next request goes out."""
+        """The request that a frame of the board answers, if any; the next one goes out."""
         asked = self._asked.get(frame.seq)
         if asked is None or frame.type not in (schema.Nack.TYPE, asked.type | schema.REPLY_BIT):
             return None

@@ -88,7 +88,7 @@ def listen(port: int = 0) -> socket.socket:
 
 
 def make_server(app: Guard) -> Server:
-    """What serves an application; its `run` takes the sockets."""
+    """The server of an application; its `run` takes the sockets."""
     config = uvicorn.Config(
         app,
         http="h11",

@@ -1,4 +1,4 @@
-"""Which parameter set a board would start with, as far as its frames tell: the link itself cannot read it."""
+"""Follows which parameter set a board would start with, as far as its frames tell: the link itself cannot read it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What verbs a page may start and with which arguments, and the words of the command line that these make."""
+"""The verbs that a page may start, their arguments, and the words of the command line that these make."""
 
 from __future__ import annotations
 

@@ -82,7 +82,7 @@ class JointController(toml_file.Table):
 
 
 class Travel(toml_file.Table):
-    """How far a voltage moves each joint: by these numbers the board holds a joint back that does not move.
+    """The travel of each joint for a voltage: by these numbers the board holds a joint back that does not move.
 
     Of joint 0..3: `speed_per_volt` (rad/(s V)), `time_constant` (ms), `breakaway_volts` (V). Against gravity, with the
     arm level: `gravity_1`, `gravity_12` (V at joint 1), `gravity_2` (V at joint 2).
@@ -131,7 +131,7 @@ class Controller(toml_file.Table):
         }
 
     def other_values(self) -> dict[str, int]:
-        """The same of what is not in a controller."""
+        """The values of a table that are not in a controller."""
         stall = {} if self.stall_volts is None else {_STALL.name: _STALL.to_raw(self.stall_volts)}
         travel = [] if self.travel is None else self.travel.parameters()
         return stall | {parameter.name: parameter.to_raw(value) for parameter, value in travel}

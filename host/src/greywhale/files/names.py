@@ -1,4 +1,4 @@
-"""What may be meant by a name that is none: a slip of the finger gets the right one shown."""
+"""Suggests the closest known name for a misspelt one."""
 
 from __future__ import annotations
 

@@ -21,7 +21,7 @@ INTEGRAL_END = Fraction(1 << 15, 1000)  # V: the integral stays within
 
 
 class Feet(Enum):
-    """How a set ends: at 0, as the project reads the paper, or straight down at the end of the plateau."""
+    """The ends of a set: at 0, as the project reads the paper, or straight down at the end of the plateau."""
 
     AT_ZERO = "at zero"
     CRISP = "crisp"
@@ -80,7 +80,7 @@ def infer(x: Fraction, y: Fraction, sets: Mapping[str, Fraction], feet: Feet = F
 
 @dataclass(frozen=True)
 class State:
-    """What the law remembers: the errors of the last `ce_ticks` periods, the oldest first, and the integral in V."""
+    """The law's memory: the errors of the last `ce_ticks` periods, the oldest first, and the integral in V."""
 
     errors: tuple[Fraction, ...] = ()
     integral: Fraction = ZERO

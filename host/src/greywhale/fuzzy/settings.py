@@ -65,7 +65,7 @@ class JointSettings:
         return _native.FuzzyController(self.native(), period_ms)
 
     def refusal(self, period_ms: int) -> Refusal:
-        """Why a board would refuse these settings: the checks of the firmware's compile(), in their order."""
+        """The reason why a board would refuse these settings, by the firmware's checks in compile(), in their order."""
         if not 1 <= period_ms <= LONGEST_PERIOD_MS:
             return Refusal.PERIOD
         if not 1 <= self.ce_ticks <= MOST_CE_TICKS:

@@ -33,7 +33,7 @@ class Side:
 
     @property
     def short_ramps(self) -> int:
-        """The same as the bits of `ShortRamp` in fuzzy_pdi.h."""
+        """The short ramps as the bits of `ShortRamp` in fuzzy_pdi.h."""
         bits = {0: 0, 8: 0x81, 1: 0x84}[self.zero_shift]
         return bits | (0x82 if self.outer_shift else 0)
 

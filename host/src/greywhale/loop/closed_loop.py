@@ -27,7 +27,7 @@ LONGEST_DELAY = 1000  # ticks
 
 @dataclass(frozen=True)
 class Timing:
-    """When things happen within a tick of 1 ms, which spans four slices of 250 us and begins somewhere in the first.
+    """The moments of things within a tick of 1 ms, which spans four slices of 250 us and begins somewhere in the first.
 
     `chain_start`: cycles (16 MHz) from the beginning of that slice to the first of the tick's 32 conversions.
     `acts`: the slice (1..3) from whose beginning each joint's new voltage acts.
@@ -184,7 +184,7 @@ def settings_of(table: ParameterTable, soft_start: bool = False) -> _native.Loop
 
 
 def settings_numbers(table: ParameterTable, soft_start: bool = False) -> dict[str, Any]:
-    """The same as numbers by name, in the order of Settings in host/native/closed_loop/experiment.h."""
+    """The settings as numbers by name, in the order of Settings in host/native/closed_loop/experiment.h."""
     lower, upper = table.limits_raw()
     return {
         "period_ms": table.period_ms,
@@ -203,7 +203,7 @@ def settings_numbers(table: ParameterTable, soft_start: bool = False) -> dict[st
 
 
 def with_ideal_follower(table: ParameterTable) -> ParameterTable:
-    """The same board with correctly wired motors and usual potentiometers, because a log's angles are already
+    """A copy of the board with correctly wired motors and usual potentiometers, because a log's angles are already
     calibrated.
     """
     usual = ParameterTable.defaults()
@@ -213,12 +213,12 @@ def with_ideal_follower(table: ParameterTable) -> ParameterTable:
 
 
 def with_right_motors(table: ParameterTable) -> ParameterTable:
-    """The same board with every `motor_sign` 1: it says how a motor's wires are, and an arm's model has none."""
+    """A copy of the board with every `motor_sign` 1: it says how a motor's wires are, and an arm's model has none."""
     return table.with_raw({f"joint{joint}.motor_sign": 1 for joint in range(JOINTS)})
 
 
 def shown_angles(angles: npt.NDArray[np.float32], plants: Plants, row_s: float) -> Floats:
-    """What the plants' potentiometers show, (n, rows, 4) rad, of their joints' angles with a row every `row_s` seconds.
+    """Readings of the plants' potentiometers, (n, rows, 4) rad, for joint angles with a row every `row_s` seconds.
 
     Play and lag are in it; noise and a bent line are not.
     """

@@ -1,4 +1,4 @@
-"""What a model says about a played check: the same leader, the same controllers, the model in the arm's place."""
+"""Simulates a played check on a model: the check's leader and controllers, the model in the arm's place."""
 
 from __future__ import annotations
 

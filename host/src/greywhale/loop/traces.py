@@ -1,4 +1,4 @@
-"""What leader, follower and motors did in a motion, measured or simulated, on an even grid."""
+"""The traces of leader, follower and motors in a motion, measured or simulated, on an even grid."""
 
 from __future__ import annotations
 

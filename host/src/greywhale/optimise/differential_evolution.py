@@ -31,7 +31,7 @@ class _Closed(BaseException):
 
 
 class _Channel:
-    """What passes between scipy's thread and the optimiser's; knows neither."""
+    """Passes points and costs between scipy's thread and the optimiser's; knows neither."""
 
     def __init__(self) -> None:
         self._batches: SimpleQueue[Floats | BaseException] = SimpleQueue()

@@ -44,7 +44,7 @@ Costs = Callable[[Floats], ArrayLike]
 
 @dataclass(frozen=True)
 class Step:
-    """How far a minimisation is, after a batch."""
+    """The progress of a minimisation, after a batch."""
 
     evaluations: int
     budget: int

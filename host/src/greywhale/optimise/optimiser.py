@@ -138,7 +138,7 @@ class Optimiser(Closing):
 
     @property
     def _moves(self) -> int:
-        """How many batches follow the first: the paper's T_max."""
+        """The number of batches that follow the first: the paper's T_max."""
         return max(1, -(-self.budget // self.pack_size) - 1)
 
     def _first_pack(self) -> Floats:

@@ -82,7 +82,7 @@ def draw_following(path: str | Path, traces: Sequence[Trace], title: str) -> Non
 
 
 def plot_following(traces: Sequence[Trace], title: str) -> Figure:
-    """What `draw_following` writes, as a figure of pyplot's that the caller closes."""
+    """Draw the figure that `draw_following` writes, in pyplot; the caller closes it."""
     strips = 2 if any(one.voltage is not None for one in traces) else 1
     joints = sorted({joint for one in traces for joint in one.joints})
     count = (len(joints) + 1) // 2  # of rows
@@ -207,7 +207,7 @@ def _average(time: Floats, voltage: Floats) -> Floats:
 
 
 def _same_leader(traces: Sequence[Trace]) -> bool:
-    """Whether all leaders make the same motion: never far from where the first is then, or is within a moment."""
+    """True if all leaders make the same motion: never far from where the first is then, or is within a moment."""
     first = traces[0]
     for other in traces[1:]:
         time = np.arange(0.0, min(first.time[-1], other.time[-1]), _SAME_MOMENT_S / 8)

@@ -80,7 +80,7 @@ def plot_responses(
 
 
 def _off(one: Trace, against: Trace, joint: int, first: float, last: float) -> tuple[Floats, Floats, Look]:
-    """How far a trace is from another at its own times, from the first to the last."""
+    """The times (s) of a trace from first to last, its distance (rad) from another trace then, and its look."""
     time = np.asarray(one.time, dtype=np.float64)
     seen = (time >= first) & (time <= last)
     reference = np.interp(time[seen], np.asarray(against.time), np.array(against.angles)[:, joint])

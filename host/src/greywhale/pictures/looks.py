@@ -1,4 +1,4 @@
-"""How each thing looks, in every picture the same: leader, follower, before, after, model, voltage, floor.
+"""The look of each thing, in every picture alike: leader, follower, before, after, model, voltage, floor.
 
 The colours are Okabe and Ito's: told apart by colour-blind readers too.
 """
@@ -26,7 +26,7 @@ class Look:
         return {"color": self.colour, "linestyle": self.style, "linewidth": self.width}
 
     def thin(self, width: float = 0.7) -> Look:
-        """The same in strips and behind others."""
+        """This look with a thinner line, for strips and for lines behind others."""
         return replace(self, width=width)
 
 

@@ -133,7 +133,7 @@ def mark_beyond(axes: Axes, most: float, curves: Sequence[tuple[Floats, Floats, 
 
 
 def _peaks(x: Floats, y: Floats, most: float, width: float) -> list[float]:
-    """Where the highest points above `most` are: one of each stretch, some of a stretch that is long."""
+    """The places of the highest points above `most`: one of each stretch, some of a stretch that is long."""
     beyond = np.flatnonzero(y > most)
     stretches: list[list[int]] = []
     for at in beyond:

@@ -63,7 +63,7 @@ class FrameDecoder:
         return [frame for frame, _ in self.feed_wire(data)]
 
     def feed_wire(self, data: bytes) -> list[tuple[Frame, bytes]]:
-        """The same, each with the bytes it came as, the closing zero included."""
+        """Feed bytes; return each whole frame with the bytes it came as, the closing zero included."""
         *whole, rest = (self._rest + data).split(b"\0")
         frames: list[tuple[Frame, bytes]] = []
         for wire in whole:

@@ -1,4 +1,4 @@
-"""Who has a port open, as far as the system tells this user: for the person who wants it free."""
+"""Finds who has a port open, as far as the system tells this user: for the person who wants it free."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def second_user_of(port: str) -> str | None:
 
 
 def meddler(port: str) -> str | None:
-    """What keeps a program away that runs here and may open the port of its own accord; None where none is known."""
+    """Advice against a program that runs here and may open the port of its own accord; None where none is known."""
     try:
         device = system.device_in(os.stat(port))
     except OSError:
@@ -78,7 +78,7 @@ def describe(pid: int) -> str:
 
 
 def _locker(port: str) -> int | None:
-    """Who has the lock that greywhale, and other programs, put on a port's device."""
+    """The process with the lock that greywhale, and other programs, put on a port's device."""
     try:
         found = os.stat(port)
         lines = (PROCESSES / "locks").read_text(encoding="ascii").splitlines()
@@ -94,7 +94,7 @@ def _locker(port: str) -> int | None:
 
 
 def _users(port: str) -> Iterator[int]:
-    """Who else has it open, of the processes that the system shows to this user."""
+    """The other processes that have it open, of those that the system shows to this user."""
     try:
         device = system.device_in(os.stat(port))
     except OSError:
@@ -109,7 +109,7 @@ def _users(port: str) -> Iterator[int]:
 
 
 def _open_files() -> list[Path]:
-    """What the processes that the system shows to this user have open; some end meanwhile."""
+    """The open files of the processes that the system shows to this user; some end meanwhile."""
     links: list[Path] = []
     for process in PROCESSES.glob("[0-9]*"):
         with contextlib.suppress(OSError):
@@ -118,7 +118,7 @@ def _open_files() -> list[Path]:
 
 
 def _makers(links: Iterable[Path], pseudo_terminal: int | None) -> Iterator[int]:
-    """Who made a pseudo-terminal: they have its other end open."""
+    """The processes that made a pseudo-terminal: they have its other end open."""
     if pseudo_terminal is None:
         return
     for link in links:

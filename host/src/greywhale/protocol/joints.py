@@ -1,4 +1,4 @@
-"""Which of the four joints an arm uses: 1 to 4 of them.
+"""The joints that an arm uses: 1 to 4 of the four.
 
 A parameter table, an arm and a log each say so by themselves (`joints_in_use`). The unused joint of a log is 0 in every
 column, that of an arm is rigid at 0 rad, and on a board its follower has no potentiometer (a scale of 0).

@@ -16,5 +16,5 @@ def open_line(port: str, restart: bool = True, baud: int = BAUD) -> Line:
 
 
 def device_of(port: str) -> str | None:
-    """What is the same for all names of a port: the system's device, or the TCP port; None where there is neither."""
+    """The key that all names of a port share: the system's device, or the TCP port; None where there is neither."""
     return port if port.startswith(PREFIX) else system.device_of(port)

@@ -93,7 +93,7 @@ class Port:
 
     @property
     def likely(self) -> bool:
-        """Whether a greywhale board may be behind it."""
+        """True if a greywhale board may be behind it."""
         return self.bench or (self.usb and not self.other)
 
     def as_dict(self) -> PortFacts:
@@ -138,7 +138,7 @@ def _most_likely(found: list[Port]) -> list[Port]:
 
 
 def is_bench(device: str) -> bool:
-    """Whether the port named `device` is a simulated board's."""
+    """True if the port named `device` is a simulated board's."""
     real = os.path.realpath(device)
     return device in LINES or any(port.bench and os.path.realpath(port.device) == real for port in find_ports())
 
@@ -188,7 +188,7 @@ def _benches() -> list[Port]:
 
 
 def _links() -> list[Path]:
-    """What benches left in the runtime folders: each a link to its port, named board-process, mega-4711."""
+    """The links that benches left in the runtime folders: each to its port, named board-process, mega-4711."""
     found = [link for folder in private_runtime_directories() for link in sorted(folder.iterdir())]
     return [link for link in found if link.is_symlink() and link.name.partition("-")[0] in BOARDS]
 
@@ -219,7 +219,7 @@ def _port(found: ListPortInfo) -> Port:
 
 
 def _something_else(found: ListPortInfo) -> str | None:
-    """What a device is that is certainly no board for greywhale; None where it may be one."""
+    """The nature of a device that is certainly no board for greywhale; None where it may be one."""
     if board := _OTHER_BOARDS.get((found.vid or 0, found.pid or 0)):
         return f"{board}, {_NO_FIRMWARE}"
     if vendor := _OTHER_VENDORS.get(found.vid or 0):

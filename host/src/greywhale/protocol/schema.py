@@ -35,7 +35,7 @@ class State(Described):
 
 
 class StopReason(Described):
-    """Why the motors last went off."""
+    """The reason why the motors last went off."""
 
     NONE = 0, "not stopped since boot"
     HOST = 1, "a stop request"
@@ -65,7 +65,7 @@ class Fault(Described):
 
 
 class NackCode(Described):
-    """Why a request was refused."""
+    """The reason why a request was refused."""
 
     NONE = 0, "not refused", "Nothing to do."
     UNKNOWN_TYPE = 1, "the firmware does not know this request", "Flash the firmware that belongs to this host with `greywhale flash`.", "the request type"
@@ -88,7 +88,7 @@ class NackCode(Described):
 
 
 class LeadRefusal(Described):
-    """Why a reference of the host was refused; the low byte of lead_refused."""
+    """The reason why a reference of the host was refused; the low byte of lead_refused."""
 
     NONE = 0, "not refused", "Nothing to do."
     NO_LEASE = 1, "a host that leads needs a lease", "Give a lease of some hundred ms."
@@ -97,7 +97,7 @@ class LeadRefusal(Described):
 
 
 class Refusal(Described):
-    """Why the controller cannot run a joint's settings; the low byte of set_refused."""
+    """The reason why the controller cannot run a joint's settings; the low byte of set_refused."""
 
     NONE = 0, "the settings can be run", "Nothing to do."
     ORDER = 1, "a fuzzy set lies on the wrong side of zero", "Keep Ze_a below 0 below Ze_c, Ne_c below 0 and Pe_b above 0, and the same for Nce_c, Zce_a, Zce_c, Pce_b."
@@ -117,7 +117,7 @@ class Board(Described):
 
 
 class ParamSource(Described):
-    """Where the running parameters came from at boot."""
+    """The source of the running parameters at boot."""
 
     DEFAULTS = 0, "built-in defaults; the EEPROM held no valid set"
     BANK_A = 1, "EEPROM bank A"
@@ -125,7 +125,7 @@ class ParamSource(Described):
 
 
 class ResetCause(Described):
-    """Why the board last started."""
+    """The reason why the board last started."""
 
     UNKNOWN = 0, "power-up or reset (the board's bootloader does not keep which)"
     POWER_ON = 1, "power came on"
@@ -144,7 +144,7 @@ class SaveState(Described):
 
 
 class ClutchAction(Described):
-    """What the clutch is to do. Any other value disengages as well."""
+    """An order to the clutch. Any other value disengages as well."""
 
     ENGAGE = 0, "the leader moves the reference again, from where both are"
     DISENGAGE = 1, "the reference rests, and the leader can be moved by itself"
@@ -152,7 +152,7 @@ class ClutchAction(Described):
 
 
 class Clutch(Described):
-    """Whether the leader arm moves the reference."""
+    """The state of the clutch: it lets the leader arm move the reference, or not."""
 
     ENGAGED = 0, "the reference is the leader's angle times the ratio"
     DISENGAGED = 1, "the reference rests"

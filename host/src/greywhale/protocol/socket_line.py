@@ -20,7 +20,7 @@ _PIECE = 65536
 
 
 class SocketLine:
-    """What a Transport is to a device. Every failure is a UserError that names the port."""
+    """A line over TCP that serves a device like a Transport. Every failure is a UserError that names the port."""
 
     restarted = True
     heard = False  # a byte from the board

@@ -100,14 +100,14 @@ class ParameterTable:
         return {one.name: raw for one, raw in zip(schema.PARAMETERS, self.raw, strict=True) if raw != one.default}
 
     def with_raw(self, changes: Mapping[str, int]) -> Self:
-        """The same table with other raw values, by name."""
+        """A copy of the table with other raw values, by name."""
         values = list(self.raw)
         for name, raw in changes.items():
             values[schema.PARAMETER_BY_NAME[name].index] = raw
         return replace(self, raw=tuple(values))
 
     def with_joints(self, joints: Joints) -> Self:
-        """The same table with neither potentiometer of the joints that are not among these."""
+        """A copy of the table with neither potentiometer of the joints that are not among these."""
         return self.with_raw({f"{side}{joint}.scale": 0 for side in ("leader", "follower") for joint in unused(joints)})
 
     def limits_raw(self) -> tuple[tuple[int, ...], tuple[int, ...]]:
@@ -120,7 +120,7 @@ class ParameterTable:
         )
 
     def with_controllers(self, rows: Iterable[Iterable[int]]) -> Self:
-        """The same table with other controllers, (4, 13) raw."""
+        """A copy of the table with other controllers, (4, 13) raw."""
         return self.with_raw(
             {
                 f"joint{joint}.{key}": int(raw)
@@ -130,11 +130,11 @@ class ParameterTable:
         )
 
     def for_board(self, board: Board) -> Self:
-        """The same values on another board."""
+        """A copy of the table for another board."""
         return replace(self, board=board)
 
     def with_name(self, name: str) -> Self:
-        """The same table under another name."""
+        """A copy of the table under another name."""
         return replace(self, name=name)
 
 

@@ -59,7 +59,7 @@ class PortDisturbedError(UserError):
 
 
 class Line(Protocol):
-    """What a device needs of a line to a board. Its `clock` (s) times what the host waits for, and `wait` (s) waits."""
+    """The interface of a line to a board. Its `clock` (s) times what the host waits for, and `wait` (s) waits."""
 
     restarted: bool
 
@@ -78,7 +78,7 @@ LENT: dict[str, Callable[[bool, int], Line]] = {}
 
 
 def disturbance(line: Line) -> PortDisturbedError | None:
-    """What another program does to a line, as far as the system tells; None where nothing is known of that kind."""
+    """Another program's harm to a line, as far as the system tells; None where nothing is known of that kind."""
     return line.disturbance() if isinstance(line, Transport) else None
 
 
@@ -113,7 +113,7 @@ class Transport:
             raise self._lost() from None
 
     def disturbance(self) -> PortDisturbedError | None:
-        """What another program does to the port, as far as the system tells."""
+        """Another program's harm to the port, as far as the system tells."""
         if changed := self._changed():
             return changed
         return None if second_user_of(self.port) is None else PortDisturbedError(self.port, _HAS_OPEN)
@@ -132,7 +132,7 @@ class Transport:
             _close(self._serial)
 
     def _lost(self) -> UserError:
-        """Why a port fails: it has gone, or somebody else takes its bytes."""
+        """The error of a port that fails: it has gone, or somebody else takes its bytes."""
         if system.line_settings(self._serial) is None:
             return PortLostError(self.port)
         return self._changed() or PortDisturbedError(self.port, _READS)

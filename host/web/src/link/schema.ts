@@ -16,7 +16,7 @@ export const State = new Enumeration("State", {
   fault: [4, "motors off until the fault is cleared"],
 });
 
-/** Why the motors last went off. */
+/** The reason why the motors last went off. */
 export const StopReason = new Enumeration("StopReason", {
   none: [0, "not stopped since boot"],
   host: [1, "a stop request"],
@@ -44,7 +44,7 @@ export const Fault = new Enumeration("Fault", {
   leader_jump: [14, "a leader's potentiometer jumped", "Check that potentiometer's three wires, its wiper and its coupling to the joint, or raise speed_limit, then clear the fault."],
 });
 
-/** Why a request was refused. */
+/** The reason why a request was refused. */
 export const NackCode = new Enumeration("NackCode", {
   none: [0, "not refused", "Nothing to do."],
   unknown_type: [1, "the firmware does not know this request", "Flash the firmware that belongs to this host with `greywhale flash`.", "the request type"],
@@ -66,7 +66,7 @@ export const NackCode = new Enumeration("NackCode", {
   no_pins: [17, "this board has too few pins for these motor drivers", "Set driver to 0 and use motor drivers with PWM and direction, or take an Arduino Mega.", "the driver"],
 });
 
-/** Why a reference of the host was refused; the low byte of lead_refused. */
+/** The reason why a reference of the host was refused; the low byte of lead_refused. */
 export const LeadRefusal = new Enumeration("LeadRefusal", {
   none: [0, "not refused", "Nothing to do."],
   no_lease: [1, "a host that leads needs a lease", "Give a lease of some hundred ms."],
@@ -74,7 +74,7 @@ export const LeadRefusal = new Enumeration("LeadRefusal", {
   limit: [3, "a point is outside the joint's limits", "Keep the motion within limit_min and limit_max of the named joint."],
 });
 
-/** Why the controller cannot run a joint's settings; the low byte of set_refused. */
+/** The reason why the controller cannot run a joint's settings; the low byte of set_refused. */
 export const Refusal = new Enumeration("Refusal", {
   none: [0, "the settings can be run", "Nothing to do."],
   order: [1, "a fuzzy set lies on the wrong side of zero", "Keep Ze_a below 0 below Ze_c, Ne_c below 0 and Pe_b above 0, and the same for Nce_c, Zce_a, Zce_c, Pce_b."],
@@ -92,14 +92,14 @@ export const Board = new Enumeration("Board", {
   native: [3, "a PC, for tests"],
 });
 
-/** Where the running parameters came from at boot. */
+/** The source of the running parameters at boot. */
 export const ParamSource = new Enumeration("ParamSource", {
   defaults: [0, "built-in defaults; the EEPROM held no valid set"],
   bank_a: [1, "EEPROM bank A"],
   bank_b: [2, "EEPROM bank B"],
 });
 
-/** Why the board last started. */
+/** The reason why the board last started. */
 export const ResetCause = new Enumeration("ResetCause", {
   unknown: [0, "power-up or reset (the board's bootloader does not keep which)"],
   power_on: [1, "power came on"],
@@ -116,14 +116,14 @@ export const SaveState = new Enumeration("SaveState", {
   failed: [3, "the EEPROM does not hold what was written; the previous set is still there"],
 });
 
-/** What the clutch is to do. Any other value disengages as well. */
+/** An order to the clutch. Any other value disengages as well. */
 export const ClutchAction = new Enumeration("ClutchAction", {
   engage: [0, "the leader moves the reference again, from where both are"],
   disengage: [1, "the reference rests, and the leader can be moved by itself"],
   reset: [2, "engaged, and the reference is the leader's angle times the ratio again; only while the motors are off"],
 });
 
-/** Whether the leader arm moves the reference. */
+/** The state of the clutch: it lets the leader arm move the reference, or not. */
 export const Clutch = new Enumeration("Clutch", {
   engaged: [0, "the reference is the leader's angle times the ratio"],
   disengaged: [1, "the reference rests"],

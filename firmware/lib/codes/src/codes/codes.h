@@ -15,7 +15,7 @@ enum class State : uint8_t {
   fault = 4,  // motors off until the fault is cleared
 };
 
-// Why the motors last went off.
+// The reason why the motors last went off.
 enum class StopReason : uint8_t {
   none = 0,  // not stopped since boot
   host = 1,  // a stop request
@@ -43,7 +43,7 @@ enum class Fault : uint8_t {
   leader_jump = 14,  // a leader's potentiometer jumped
 };
 
-// Why a request was refused.
+// The reason why a request was refused.
 enum class NackCode : uint8_t {
   none = 0,  // not refused
   unknown_type = 1,  // the firmware does not know this request
@@ -65,7 +65,7 @@ enum class NackCode : uint8_t {
   no_pins = 17,  // this board has too few pins for these motor drivers
 };
 
-// Why a reference of the host was refused; the low byte of lead_refused.
+// The reason why a reference of the host was refused; the low byte of lead_refused.
 enum class LeadRefusal : uint8_t {
   none = 0,  // not refused
   no_lease = 1,  // a host that leads needs a lease
@@ -73,7 +73,7 @@ enum class LeadRefusal : uint8_t {
   limit = 3,  // a point is outside the joint's limits
 };
 
-// Why the controller cannot run a joint's settings; the low byte of set_refused.
+// The reason why the controller cannot run a joint's settings; the low byte of set_refused.
 enum class Refusal : uint8_t {
   none = 0,  // the settings can be run
   order = 1,  // a fuzzy set lies on the wrong side of zero
@@ -91,14 +91,14 @@ enum class Board : uint8_t {
   native = 3,  // a PC, for tests
 };
 
-// Where the running parameters came from at boot.
+// The source of the running parameters at boot.
 enum class ParamSource : uint8_t {
   defaults = 0,  // built-in defaults; the EEPROM held no valid set
   bank_a = 1,  // EEPROM bank A
   bank_b = 2,  // EEPROM bank B
 };
 
-// Why the board last started.
+// The reason why the board last started.
 enum class ResetCause : uint8_t {
   unknown = 0,  // power-up or reset (the board's bootloader does not keep which)
   power_on = 1,  // power came on
@@ -115,14 +115,14 @@ enum class SaveState : uint8_t {
   failed = 3,  // the EEPROM does not hold what was written; the previous set is still there
 };
 
-// What the clutch is to do. Any other value disengages as well.
+// An order to the clutch. Any other value disengages as well.
 enum class ClutchAction : uint8_t {
   engage = 0,  // the leader moves the reference again, from where both are
   disengage = 1,  // the reference rests, and the leader can be moved by itself
   reset = 2,  // engaged, and the reference is the leader's angle times the ratio again; only while the motors are off
 };
 
-// Whether the leader arm moves the reference.
+// The state of the clutch: it lets the leader arm move the reference, or not.
 enum class Clutch : uint8_t {
   engaged = 0,  // the reference is the leader's angle times the ratio
   disengaged = 1,  // the reference rests

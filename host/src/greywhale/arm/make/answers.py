@@ -16,7 +16,7 @@ TABLES = ("link", "joint")
 
 
 class GivenAnswer(NamedTuple):
-    """What somebody said."""
+    """A question and what somebody answered."""
 
     question: Question
     value: float | str

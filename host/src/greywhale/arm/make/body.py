@@ -23,7 +23,7 @@ MATERIALS = {
 
 @dataclass(frozen=True)
 class Section:
-    """What a cut across the link shows: `area` m², and mean squares (m²) of width (pitch axis) and height over it."""
+    """A cut across the link: `area` m², and mean squares (m²) of width (pitch axis) and height over it."""
 
     area: float
     width2: float
@@ -57,7 +57,7 @@ class Body:
 
 
 def uniform(section: Section, length: float, mass: float) -> Body:
-    """The same section from joint to joint."""
+    """A body with one section from joint to joint."""
     slender = length**2 / 12.0
     return Body(
         mass,
@@ -69,7 +69,7 @@ def uniform(section: Section, length: float, mass: float) -> Body:
 
 
 def with_parts(body: Body, mass: float, distance: float) -> Body:
-    """The same with so much mass (kg) at one point of its line, `distance` (m) from the nearer joint."""
+    """The body with so much mass (kg) added at one point of its line, `distance` (m) from the nearer joint."""
     total = body.mass + mass
     centre = (body.mass * body.centre + mass * distance) / total
     shifted = body.mass * (body.centre - centre) ** 2 + mass * (distance - centre) ** 2

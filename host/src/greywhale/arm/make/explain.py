@@ -1,4 +1,4 @@
-"""What `?` says of a question: what is meant, and which answers will do."""
+"""Explains a question to whoever answers `?`: its meaning, and which answers will do."""
 
 from __future__ import annotations
 

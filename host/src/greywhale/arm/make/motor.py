@@ -35,7 +35,7 @@ class DataSheet:
 
 
 def contradiction(stall_torque: float, stall_current: float, no_load_speed: float, rated_v: float) -> str:
-    """Why no motor can have these values; "" where one can."""
+    """The reason why no motor can have these values; "" where one can."""
     mechanical, electrical = stall_torque * no_load_speed, rated_v * stall_current
     if mechanical <= electrical:
         return ""

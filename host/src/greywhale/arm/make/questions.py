@@ -1,4 +1,4 @@
-"""What is asked about an arm, one thing at a time, with unit, range and what is usual; of a person or a file."""
+"""The questions about an arm, one at a time, with unit, range and usual value; for a person or a file."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ class Question:
 
 
 class Source(Protocol):
-    """Who answers: a person, asked again until an answer will do, or a file."""
+    """A person, asked again until an answer will do, or a file of answers."""
 
     def heading(self, text: str) -> None: ...
     def ask(self, question: Question) -> float | str: ...

@@ -26,7 +26,7 @@ Line = dict[str, Any]
 
 @dataclass(frozen=True)
 class Kind:
-    """What a file is for, in the words of its sentences: `noun` of a `subject`, "journal" of a "tuning"."""
+    """The purpose of a file, in the words of its sentences: `noun` of a `subject`, "journal" of a "tuning"."""
 
     mark: str  # the key in the first line that holds the version
     version: int

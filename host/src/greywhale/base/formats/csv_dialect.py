@@ -14,7 +14,7 @@ _BEHIND = "".join(SEPARATORS) + " \r\n"
 
 
 def comment_in(line: str) -> str | None:
-    """What a comment says, without its `#`, quotes, and the empty cells that a spreadsheet put behind it; else None."""
+    """A comment's text without `#`, quotes and the empty cells that a spreadsheet put behind it; else None."""
     text = line.strip()
     if _SEPARATOR_LINE.fullmatch(text):
         return ""

@@ -220,12 +220,12 @@ class CsvFile:
 
 
 def is_time_axis(values: NDArray[np.float64], before: float) -> bool:
-    """Whether these are times of a recording, in s, that go on after `before`."""
+    """True if these are times of a recording, in s, that go on after `before`."""
     return bool((np.abs(values) <= _MOST_S).all() and (np.diff(values, prepend=before) >= _LEAST_STEP_S).all())
 
 
 def is_plain(text: str) -> bool:
-    """Whether a number is in digits that everyone reads alike: Python takes those of all alphabets, and 1_000."""
+    """True if a number is in digits that everyone reads alike: Python takes those of all alphabets, and 1_000."""
     return text.isascii() and "_" not in text
 
 
@@ -237,7 +237,7 @@ def number(text: str) -> float:
 
 
 def _is_heading(text: str, wanted: Sequence[Sequence[str]]) -> bool:
-    """Whether a line has the names of columns, however they are separated."""
+    """True if a line has the names of columns, however they are separated."""
     words = text.replace(",", " ").replace(";", " ").replace('"', " ").split()
     return any(words == list(names) for names in wanted)
 

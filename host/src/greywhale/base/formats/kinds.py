@@ -1,4 +1,4 @@
-"""What kind of greywhale's TOML files a table is, guessed by its keys: a file of the wrong kind is told by name."""
+"""Guesses the kind of a greywhale TOML table by its keys: the message on a file of the wrong kind names that kind."""
 
 from __future__ import annotations
 

@@ -87,7 +87,7 @@ def check(data: dict[str, Any], model: type[Model], name: str) -> Model:
 
 
 def advice(key: str, known: Iterable[str]) -> str:
-    """What to do about an unknown key: the one that was probably meant, if there is one."""
+    """Advice about an unknown key: the one that was probably meant, if there is one."""
     meant = get_close_matches(key, list(known), 1)
     return f"perhaps {meant[0]} is meant" if meant else "remove it or check its spelling"
 

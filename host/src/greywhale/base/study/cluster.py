@@ -159,7 +159,7 @@ def _security(distributed: Any) -> Any:
 
 @contextlib.contextmanager
 def _quiet() -> Iterator[None]:
-    """What Dask logs of lost workers and closed connections is no news to a study."""
+    """Silence Dask's log of lost workers and closed connections, which are no news to a study."""
     logger = logging.getLogger("distributed")
     before = logger.level
     logger.setLevel(logging.CRITICAL)

@@ -13,7 +13,7 @@ _FLOAT, _ARRAY = "$float", "$array"
 
 
 def encode(value: Any) -> Any:
-    """What JSON can hold; TypeError or ValueError for what is not plain."""
+    """The value as JSON can hold it; TypeError or ValueError for one that is not plain."""
     if value is None or isinstance(value, (bool, str)):
         return value
     if isinstance(value, (int, np.integer)):

@@ -41,7 +41,7 @@ class Results(Closing):
         self._found[key] = decode(value)
 
     def of(self, tasks: Sequence[Task]) -> dict[str, Any]:
-        """What is known, in the tasks' order."""
+        """The results known so far, in the tasks' order."""
         return {task.key: self._found[task.key] for task in tasks if task.key in self._found}
 
     def close(self) -> None:
@@ -50,7 +50,7 @@ class Results(Closing):
 
 
 def _identity(tasks: Sequence[Task], about: Mapping[str, Any]) -> dict[str, Any]:
-    """What a study is: what its user says of it, the versions, and every task with its seed and arguments."""
+    """The identity of a study: its user's words, the versions, and every task with its seed and arguments."""
     told = json.dumps([task.identity for task in tasks], separators=(",", ":"), allow_nan=False)
     digest = hashlib.sha256(told.encode()).hexdigest()[:16]
     own = {"versions": versions(), "number of tasks": len(tasks), "list of tasks": digest}

@@ -92,7 +92,7 @@ def _result(future: Future[str], task: Task) -> str:
 
 
 def _lost(tasks: Iterable[Task]) -> UserError:
-    """Which task ended its worker, nobody knows."""
+    """The error for a worker that ended; nobody knows which task ended it."""
     names = ", ".join(repr(task.key) for task in tasks)
     return UserError(
         f"a worker ended before its task was done (of too little memory, or by a crash); its task is among {names}. "

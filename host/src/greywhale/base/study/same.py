@@ -1,4 +1,4 @@
-"""What the bits of a result depend on beside the task: versions, and how a machine rounds. All workers must agree."""
+"""The versions and the rounding that the bits of a result depend on beside the task. All workers must agree on them."""
 
 from __future__ import annotations
 

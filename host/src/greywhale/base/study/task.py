@@ -44,11 +44,11 @@ class Task:
 
     @property
     def identity(self) -> list[Any]:
-        """What its result depends on, as JSON can hold it. (The function's module may be called `__main__`, or not.)"""
+        """All that its result depends on, for JSON. (The function's module may be called `__main__`, or not.)"""
         return [self.key, self.function.__qualname__, self.seed, encode(self.arguments)]
 
     def packed(self) -> bytes:
-        """What a worker gets."""
+        """The pickled task for a worker."""
         return pickle.dumps((self.key, self.function, self.seed, encode(self.arguments), _process(), facts()))
 
 

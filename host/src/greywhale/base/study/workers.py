@@ -1,4 +1,4 @@
-"""Who does the tasks of a study: any executor, or this process, or processes of its own, or a scheduler's workers.
+"""Runs the tasks of a study: in any executor, this process, processes of its own, or a scheduler's workers.
 
 The processes here are spawned, not forked: a fork would copy the state of other threads (a progress bar's, for
 example) with their locks. They end with this process, however it ends, and at once when a study is left.

@@ -104,7 +104,7 @@ def readable(table: ParameterTable, joints: Joints) -> ParameterTable:
 
 
 def _calibrate(device: Device, table: ParameterTable, before: ParameterTable, guide: Guide, options: Options) -> Result:
-    """The same while `table` runs; `before` is the stored one."""
+    """Calibrate while `table` runs; `before` is the stored one."""
     watch = Watch(device, table, guide)
     if guide.patient:
         guide.tell(HOW_TO_ANSWER)

@@ -13,7 +13,7 @@ WHOLE = COUNT14 * FULL_SCALE
 
 
 def with_board_pots(arm: ArmParameters, table: ParameterTable) -> ArmParameters:
-    """The same arm with the tracks, middles and directions by which the board's table reads angles.
+    """A copy of the arm with the tracks, middles and directions by which the board's table reads angles.
 
     Raises UserError where arm and board do not use the same joints.
     """

@@ -192,5 +192,5 @@ def _wait_until_still(device: Device) -> None:
 
 
 def _is_still(*angles: tuple[int, ...]) -> bool:
-    """Whether no joint moves between these raw angles (4,) of the follower."""
+    """True if no joint moves between these raw angles (4,) of the follower."""
     return all(max(joint) - min(joint) <= STILL_RAD / ANGLE_LSB for joint in zip(*angles, strict=True))

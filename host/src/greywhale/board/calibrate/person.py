@@ -33,7 +33,7 @@ class Guide(Protocol):
 
     @property
     def patient(self) -> bool:
-        """Whether somebody is there who may be asked again and again; a script's lines come to an end."""
+        """True if somebody is there who may be asked again and again; a script's lines come to an end."""
 
     def ask(self, what: str) -> None:
         """Say what to do, to be answered when it is done; what was said before counts no more."""

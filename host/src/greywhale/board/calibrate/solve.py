@@ -104,7 +104,7 @@ def match(calibration: Calibration, sweeps: Sequence[Sweep], first: Pose, same: 
 
 
 def slipped(before: Pose, after: Pose) -> list[str]:
-    """What differs where the same pose was held twice: a sentence for each potentiometer."""
+    """A sentence for each potentiometer that reads something else where the same pose is held again."""
     apart = np.abs(after.counts - before.counts)
     return [
         f"{upper_first(pot_name(pot))} reads {apart[pot]:.0f} counts elsewhere in the same pose: it "

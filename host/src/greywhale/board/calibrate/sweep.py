@@ -47,7 +47,7 @@ def judge_sweep(counts: Floats, pot: int) -> Sweep:
 
 
 def _wiring(smooth: Floats, pot: int) -> list[str]:
-    """Whether this potentiometer moved, and no other."""
+    """A sentence for the mistake if another potentiometer moved, or this one did not; none if it moved alone."""
     spans = np.ptp(smooth, axis=0)
     name, span = upper_first(pot_name(pot)), float(spans[pot])
     others = [other for other in range(len(POTS)) if other != pot and spans[other] >= LEAST_COUNTS]
@@ -84,7 +84,7 @@ def _wiring(smooth: Floats, pot: int) -> list[str]:
 
 
 def _contact(raw: Floats, own: Floats, name: str) -> list[str]:
-    """Whether the track is whole where the joint goes, and the contact good."""
+    """A sentence for the mistake if the track ends or breaks where the joint goes, or its contact is bad; else none."""
     if _is_crossed(own):
         return [_crossed(name, _reading(own))]
     if _jumps_across(own):
@@ -116,7 +116,7 @@ def _dead_zone(name: str) -> str:
 
 
 def _is_crossed(own: Floats) -> bool:
-    """Whether it stays near 5 V but is at no rail: what a pull-down makes of an end of the track on the pin."""
+    """True if it stays near 5 V but is at no rail: a pull-down makes that of an end of the track on the pin."""
     low, high = float(own.min()), float(own.max())
     return low > CROSSED_FROM and high < FULL_SCALE - RAIL_COUNTS and RAIL_COUNTS < high - low < CROSSED_SPAN
 

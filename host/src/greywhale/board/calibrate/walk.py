@@ -26,7 +26,7 @@ _COUNTS = {2: "two", 4: "four", 6: "six", 8: "eight"}
 
 
 class Walk:
-    """What is known so far. `poses` are the four that are asked for; the second's angles count if `track_rad` is None,
+    """The readings so far. `poses` are the four that are asked for; the second's angles count if `track_rad` is None,
     else the tracks have this length.
     """
 
@@ -82,7 +82,7 @@ class Walk:
         return answer
 
     def _mend(self, pot: int, mistakes: str) -> PersonAnswer:
-        """How to go on after a sweep with mistakes; what moves while a person mends is not judged."""
+        """Ask how to go on after a sweep with mistakes; what moves while a person mends is not judged."""
         name = upper_first(joint_name(pot))
         self._refuse(name, mistakes, mistakes)
         if not self._watch.guide.patient:
@@ -131,7 +131,7 @@ class Walk:
         return match(solve(sweeps, first, None, self._track_rad), sweeps, first, second)
 
     def _compare(self) -> Floats:
-        """How far the arms are apart (4,) rad in the last pose; those before fit by themselves."""
+        """The distance between the arms (4,) rad in the last pose; those before fit by themselves."""
         angles = self._found().angles(self._poses[3].counts)
         apart: Floats = np.abs(angles[JOINTS:] - angles[:JOINTS])
         worst = int(np.argmax(apart))

@@ -1,4 +1,4 @@
-"""What the person is asked to do: joints by name, and which way of each is positive."""
+"""Instructions to the person: joints by name, and which way of each is positive."""
 
 from __future__ import annotations
 

@@ -52,7 +52,7 @@ def examine_hello(hello: schema.HelloReply, firmware_version: str) -> list[Findi
 
 
 def examine_status(hello: schema.HelloReply, status: schema.StatusReply) -> list[Finding]:
-    """How it started, its fault, and whether its ticks are in time."""
+    """Findings on the board's start, its fault and late ticks."""
     remedy = _STARTS.get(hello.reset_cause, "")
     start = Finding(
         "last start",
@@ -74,7 +74,7 @@ def examine_status(hello: schema.HelloReply, status: schema.StatusReply) -> list
 
 
 def _wear(saves: int) -> Finding:
-    """How much of the EEPROM's life is used. Banks take turns, and a save writes one cell of its bank twice: the first.
+    """The used share of the EEPROM's life. Banks take turns, and a save writes one cell of its bank twice: the first.
 
     So no cell is written more often than there were saves.
     """
@@ -95,7 +95,7 @@ def _wear(saves: int) -> Finding:
 
 
 def examine_supply(table: ParameterTable, measured_v: float | None) -> Finding:
-    """What the board takes the motors' supply for, against what somebody measured there."""
+    """Compare the motors' supply as the board takes it with the voltage that somebody measured there."""
     counts = f"The board counts on {table.supply_v:g} V for the motors"
     if measured_v is None:
         return Finding("supply", Verdict.GOOD, f"{counts}; it cannot measure them (--supply VOLTS compares).")

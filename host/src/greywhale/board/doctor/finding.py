@@ -8,7 +8,7 @@ from enum import StrEnum
 
 
 class Verdict(StrEnum):
-    """How something is: `note` is worth knowing, `bad` must be mended before an arm moves."""
+    """A grade: `note` is worth knowing, `bad` must be mended before an arm moves."""
 
     GOOD = "good"
     NOTE = "note"

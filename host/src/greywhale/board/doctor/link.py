@@ -18,7 +18,7 @@ _ASK_EVERY = 8  # samples
 
 @dataclass(frozen=True)
 class Traffic:
-    """What was sent and what went wrong. `lost` are samples; `slowest_s` is the longest wait for an answer."""
+    """Counts of frames sent and of errors. `lost` are samples; `slowest_s` is the longest wait for an answer."""
 
     samples: int
     lost: int

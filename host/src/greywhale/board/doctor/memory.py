@@ -12,7 +12,7 @@ _IMAGE, _BOOTLOADER = "image", "bootloader"
 
 
 def examine_comparison(found: Comparison) -> Finding:
-    """Whether every byte is that of the image; the first that is not is told by its address."""
+    """A finding that says if every byte is that of the image, or the address of the first that is not."""
     if found.same:
         return Finding(
             _IMAGE, Verdict.GOOD, f"All {found.compared:,} bytes of {found.path.name} are on the board, byte by byte."

@@ -29,7 +29,7 @@ HUM_HZ, MUCH_HUM = (50.0, 60.0), 1.5  # amplitude in counts, its first harmonic 
 
 @dataclass(frozen=True)
 class Quiet:
-    """What one potentiometer shows at rest, in counts: `noise` is rms, `hum` an amplitude at `hum_hz`."""
+    """One potentiometer at rest, in counts: `noise` is rms, `hum` an amplitude at `hum_hz`."""
 
     noise: float
     hum: float

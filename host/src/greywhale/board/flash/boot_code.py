@@ -1,4 +1,4 @@
-"""What a bootloader does after a reset by the watchdog, from its own code.
+"""Predicts from a bootloader's own code what it does after a reset by the watchdog.
 
 Such a reset leaves the watchdog on, at 16 ms. A bootloader that does not look at the cause of the reset waits for a
 host, and is reset while it waits, again and again until power is cut.
@@ -17,7 +17,7 @@ _READS_CAUSE, _ANY_REGISTER = 0xB604, 0x01F0
 
 @dataclass(frozen=True)
 class BootCode:
-    """Which bootloader it is, in words; whether it comes back from a hang, None where its code cannot be read."""
+    """A bootloader in words, and whether it comes back from a hang, None where its code cannot be read."""
 
     title: str
     comes_back: bool | None

@@ -27,7 +27,7 @@ class Dialect:
 
 @dataclass(frozen=True)
 class Bootloader:
-    """Who answered in which dialect, and the signature of its chip, None where it did not tell that."""
+    """The dialect that a bootloader answers in, and the signature of its chip, None where it did not tell that."""
 
     dialect: Dialect
     signature: bytes | None

@@ -66,7 +66,7 @@ def read_image(path: Path) -> Image:
 
 
 def read_pieces(path: Path) -> list[tuple[int, bytes]]:
-    """What a HEX file holds: address and bytes of each stretch without a gap."""
+    """The contents of a HEX file: address and bytes of each stretch without a gap."""
     if not path.is_file():
         raise BadUsage(f"{path}: there is no such file; build one with `pio run`, or leave --hex out.")
     try:

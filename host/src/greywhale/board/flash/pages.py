@@ -127,7 +127,7 @@ def held_blocks(image: Image, size: int) -> list[range]:
 
 
 def _must_erase_gaps(memory: Memory, image: Image, held: Sequence[range], size: int) -> bool:
-    """Whether a page behind a gap would not keep what is written there; `held` are those behind the first page."""
+    """True if a page behind a gap would not keep what is written there; `held` are those behind the first page."""
     late = [page for place, page in enumerate(held, start=1) if page.start != place * size]
     if not (memory.line.erases_in_order and late):
         return False

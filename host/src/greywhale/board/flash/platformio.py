@@ -71,7 +71,7 @@ def _platformio() -> list[str]:
 
 
 def _build_folder(firmware: Path, environment: dict[str, str]) -> Path:
-    """Where PlatformIO builds, which its environment variables may move."""
+    """The folder in which PlatformIO builds, which its environment variables may move."""
     if "PLATFORMIO_BUILD_DIR" in environment:
         return Path(environment["PLATFORMIO_BUILD_DIR"])
     return Path(environment.get("PLATFORMIO_WORKSPACE_DIR", firmware / ".pio")) / "build"

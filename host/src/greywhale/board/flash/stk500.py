@@ -13,7 +13,7 @@ from greywhale.board.flash.talk import Talk
 
 
 class Stk500(Protocol):
-    """What a bootloader can be asked for."""
+    """The requests that a bootloader answers."""
 
     erases_in_order: bool  # one page after the other from the first on, whichever page is written
 

@@ -12,7 +12,7 @@ _TRY_S = 0.5
 
 
 class Talk:
-    """What a bootloader says, in the pieces that are expected of it."""
+    """A bootloader's answers, in the pieces that are expected of it."""
 
     def __init__(self, line: Line) -> None:
         self.write = line.write

@@ -86,7 +86,7 @@ def draw(learnt: Learnt, folder: Path) -> tuple[Path, ...]:
 
 
 def arm_as_drawn(arm: ArmParameters) -> ArmParameters:
-    """What an arm's drawings show: geometry, stops, potentiometers and supply, with the paper's white-box motors.
+    """The arm as its drawings show it: geometry, stops, potentiometers and supply, with the paper's white-box motors.
 
     The motors' true values, friction and backlash are left out: an identification has to find them.
     """

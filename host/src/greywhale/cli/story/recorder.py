@@ -105,7 +105,7 @@ def _wait_for_the_arms(bench: RunningBench, device: Device, leader: Path, joints
 
 
 def _not_there(bench: RunningBench, leader: Path, joints: Joints, seen: Floats) -> UserError:
-    """What keeps the arms from the start of the motion, or the board from seeing them there; `seen` is (2, 4) rad."""
+    """The error of arms that are not at the start of the motion, or not seen there; `seen` is (2, 4) rad."""
     home, truth = load_leader(leader).angles[0], bench.command("status")
     for joint in joints:
         if abs(truth["follower"][joint] - home[joint]) > READY_RAD:

@@ -1,4 +1,4 @@
-"""What the demo found: the measures of every run side by side, for people and as JSON."""
+"""The demo's results: the measures of every run side by side, for people and as JSON."""
 
 from __future__ import annotations
 

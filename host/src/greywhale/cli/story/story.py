@@ -42,7 +42,7 @@ SHORTEST_PRACTICE_S, LONGEST_PRACTICE_S = 10.0, 60.0
 
 @dataclass(frozen=True)
 class DemoOptions:
-    """What the demo shows."""
+    """Options of the demo."""
 
     out: Path
     leader: Path | None = None  # CSV of a leader's motion; None: generated human-like reaches

@@ -32,7 +32,7 @@ _FORM = re.compile(r"([0-9]{1,18}) rows, crc32 [0-9a-f]{8}")
 
 
 class Check(StrEnum):
-    """What the check of a log says."""
+    """The outcome of a log's check."""
 
     WHOLE = "whole"  # as it was recorded
     UNCHECKED = "unchecked"  # it has none: an older log, one of another tool, or one whose program was killed
@@ -52,13 +52,13 @@ def add_rows(crc: int, lines: bytes) -> int:
 
 
 def check_text(rows: int, crc: int, facts: Mapping[str, str]) -> str:
-    """What the header of a log with these rows, their CRC and these facts says."""
+    """The check that the header of a log with these rows, their CRC and these facts holds."""
     covered = [f"{key}: {facts[key]}\n" for key in sorted(facts) if key in _FACTS or key.startswith(PARAMETERS)]
     return f"{rows} rows, crc32 {zlib.crc32(''.join(covered).encode(), crc):08x}"
 
 
 def rows_stated(facts: Mapping[str, str], name: str) -> int | None:
-    """How many rows the check of the log `name` is for; None where it has no check."""
+    """The number of rows that the check of the log `name` is for; None where it has no check."""
     stated = facts.get(KEY, "")
     form = _FORM.fullmatch(stated)
     if stated and form is None:
@@ -70,7 +70,7 @@ def rows_stated(facts: Mapping[str, str], name: str) -> int | None:
 
 
 def compare(facts: Mapping[str, str], name: str, rows: int, crc: int) -> Check:
-    """What the check of the log `name` says about the rows that were read, and their CRC."""
+    """Compare the check of the log `name` with the rows that were read, and their CRC."""
     stated = rows_stated(facts, name)
     if stated is None:
         return Check.UNCHECKED

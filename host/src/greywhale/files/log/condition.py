@@ -31,7 +31,7 @@ class Gap:
 
 @dataclass(frozen=True)
 class Condition:
-    """What the check says, the gaps, and what whoever uses the log should know, in sentences that follow its name."""
+    """The check's outcome, the gaps, and remarks for whoever uses the log, as sentences that follow its name."""
 
     check: Check = Check.UNCHECKED
     gaps: tuple[Gap, ...] = ()
@@ -58,7 +58,7 @@ def judge_condition(name: str, facts: Mapping[str, str], crc: int, time_s: NDArr
 
 
 def gaps_in(time_s: NDArray[np.float64]) -> tuple[Gap, ...]:
-    """Where more than ten samples in a row are missing, by the usual time between two rows."""
+    """The gaps, in which more than ten samples in a row are missing, by the usual time between two rows."""
     steps = np.diff(time_s)
     period = max(float(np.median(steps)), _SHORTEST_S)
     # Clocks and decimals round.

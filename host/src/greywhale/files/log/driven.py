@@ -1,4 +1,4 @@
-"""Which rows of a log show motors at work, and which joints had no voltage that could have moved them."""
+"""Finds the rows of a log with motors at work, and the joints that had no voltage that could have moved them."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def following_rows(log: Log) -> NDArray[np.bool_]:
 
 
 def driven_rows(log: Log) -> NDArray[np.bool_]:
-    """The same, but in a log that has none without those far from any voltage: the motors were off there."""
+    """The following rows; in a log that has none, the rows near a voltage, since the motors were off elsewhere."""
     powered = np.flatnonzero((np.abs(log.voltage) >= LEAST_V).any(axis=1))
     if not powered.size or (log.state == "following").any():
         return following_rows(log)
@@ -64,7 +64,7 @@ def tell_off(log: Log) -> str:
 
 
 def tell_undriven(log: Log, rows: NDArray[np.bool_]) -> dict[int, str]:
-    """The same of single joints that moved or were led in these rows: a clause for each."""
+    """A clause for each single joint that moved or was led in these rows without a voltage."""
     told = {}
     for joint in undriven(log, rows):
         led, moved = (_range(angles, rows, joint) for angles in (log.leader, log.follower))

@@ -28,7 +28,7 @@ ENDINGS = (COMPLETE, INTERRUPTED, UNFINISHED)
 
 @dataclass(frozen=True)
 class Origin:
-    """Where a log comes from. A fact is known when recording starts, or None where another tool's file does not state
+    """The origin of a log. A fact is known when recording starts, or None where another tool's file does not state
     it.
     """
 

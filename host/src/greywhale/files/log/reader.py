@@ -59,11 +59,11 @@ class Log:
 
     @property
     def remarks(self) -> tuple[str, ...]:
-        """What whoever uses the log should know, a sentence each."""
+        """Remarks for whoever uses the log, a sentence each."""
         return tuple(f"{self.name}: {remark}" for remark in self.condition.remarks)
 
     def without_samples(self) -> Log:
-        """What is known of the log apart from its samples, which take most of the memory."""
+        """The log without its samples, which take most of the memory."""
         none = np.empty((0, JOINTS))
         return replace(self, time=np.empty(0), leader=none, follower=none, voltage=none, state=self.state[:0].copy())
 
@@ -187,14 +187,14 @@ def _refuse_other_period(name: str, origin: Origin, columns: _Columns) -> None:
 
 
 def _is_good(numbers: NDArray[np.float64], before: float) -> bool:
-    """Whether time goes on, and all is within what a board can say."""
+    """True if time goes on, and all is within what a board can say."""
     return csv_file.is_time_axis(numbers[:, 0], before) and all(
         bool((np.abs(numbers[:, _PLACES[quantity]]) <= most).all()) for quantity, (most, _) in _MOST.items()
     )
 
 
 def _cell_by_cell(table: csv_file.CsvTable, before: float) -> tuple[NDArray[np.float64], NDArray[np.int8]]:
-    """The same as `parse_rows`, of rows in any form of CSV, each cell checked."""
+    """Parse rows in any form of CSV like `parse_rows`, each cell checked."""
     time = table.increasing("time_s", before)
     for row, cell in enumerate(table.columns["state"]):
         if cell not in STATES:
@@ -213,7 +213,7 @@ def _words(places: NDArray[np.int8]) -> NDArray[np.str_]:
 
 
 def _count_lines(path: str | Path) -> int:
-    """How many lines a file has at most."""
+    """An upper bound on the number of lines of a file."""
     count = 1
     with open(path, "rb") as file:
         while data := file.read(csv_file.BLOCK):
@@ -262,7 +262,7 @@ def _origin(facts: dict[str, str], name: str) -> Origin:
 
 
 def _joints_in_use(facts: dict[str, str], name: str, table: ParameterTable | None) -> Joints:
-    """What the header says, or its parameters do; a log that says neither is of a whole arm."""
+    """The joints that the header states, or else its parameters; a log that states neither is of a whole arm."""
     if "joints_in_use" in facts:
         return parse(facts["joints_in_use"], f"{name}: joints_in_use")
     return ALL if table is None else table.joints_in_use

@@ -65,7 +65,7 @@ def _pieces(log: Log) -> list[slice]:
 
 
 def _shown(log: Log, piece: slice, usual: Floats) -> Floats:
-    """How much a piece shows: five things of every joint, (20,)."""
+    """The amount that a piece shows of five things of every joint, (20,)."""
     time = log.time[piece]
     period = float(time[-1] - time[0]) / (len(time) - 1)
     size = max(1, round(_STEP_S / period))

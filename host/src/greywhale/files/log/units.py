@@ -54,7 +54,7 @@ def doubt_spacing(time_s: Floats) -> tuple[str, ...]:
 
 
 def doubt_speed(time_s: Floats, angles: Floats) -> tuple[str, ...]:
-    """The same for a motion whose joints all creep, (rows, joints) rad."""
+    """Doubts about a motion whose joints all creep, (rows, joints) rad."""
     if np.ptp(angles, axis=0).max() < _MOTION_RAD:
         return ()
     fastest = float((np.abs(np.diff(angles, axis=0)) / np.diff(time_s)[:, None]).max())
@@ -64,7 +64,7 @@ def doubt_speed(time_s: Floats, angles: Floats) -> tuple[str, ...]:
 
 
 def doubt_angles(*angles: Floats) -> tuple[str, ...]:
-    """The same for a log that does not say how its potentiometers are scaled, (rows, joints) rad each."""
+    """Doubts about a log that does not say how its potentiometers are scaled, (rows, joints) rad each."""
     largest = max(float(max(one.max(), -one.min())) for one in angles)
     if largest <= _HALF_TURN_RAD:
         return ()
@@ -72,7 +72,7 @@ def doubt_angles(*angles: Floats) -> tuple[str, ...]:
 
 
 def perhaps_degrees(largest: float) -> str:
-    """What to add where an angle of so many rad is out of range: that it may be in degrees, or nothing."""
+    """A clause for an angle of so many rad that is out of range: that it may be in degrees, or nothing."""
     return f"; angles reach {largest:.3g}, so they seem to be in degrees" if _TURN_RAD < largest < _MOST_DEG else ""
 
 

@@ -198,7 +198,7 @@ def _gaps(gaps: Sequence[tuple[float, float]]) -> str:
 
 
 def _reason(raised: BaseException | None) -> str:
-    """Why a recording ended early, in one line."""
+    """The reason why a recording ended early, in one line."""
     notes = getattr(raised, "__notes__", ())
     if isinstance(raised, UserError):
         return raised.message.replace("\n", " ")
