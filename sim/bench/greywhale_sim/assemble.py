@@ -26,7 +26,7 @@ BUILDS = Path(__file__).resolve().parents[3] / "firmware" / ".pio" / "build"
 
 @dataclass(frozen=True)
 class BenchOptions:
-    """What stands on the bench."""
+    """The choice of things that stand on the bench."""
 
     board: str = "mega"
     leader: Path | None = None  # CSV of the leader's motion; None: generated human-like reaches

@@ -33,7 +33,7 @@ CRASHED = 2
 
 
 class Board(Protocol):
-    """What the bench needs of the simulated Arduino (greywhale_sim._board.Board)."""
+    """The interface of the simulated Arduino that the bench uses (greywhale_sim._board.Board)."""
 
     @property
     def cycle(self) -> int: ...
@@ -195,7 +195,7 @@ class Bench:
         return self.plant
 
     def _build_anew(self, parameters: arm.ArmParameters) -> None:
-        """Where the arm is, at rest."""
+        """Build the plant anew where the arm is, at rest."""
         self.plant = arm.Arm(parameters)
         self._stops = stops_of(self.plant)
         self.plant.reset(self.angles)
@@ -203,7 +203,7 @@ class Bench:
 
     @property
     def tip_kg(self) -> float | None:
-        """What the arm carries; None for an arm that cannot be loaded."""
+        """The mass that the arm carries; None for an arm that cannot be loaded."""
         return self.plant.parameters.tip.mass if isinstance(self.plant, arm.Arm) else None
 
     def let_float(self, pot: int, floats: bool) -> None:
@@ -279,7 +279,7 @@ class Bench:
         return step
 
     def _drive(self, pins: Floats) -> None:
-        """What the drivers' chips make of the pins: voltages, or motors that coast between pulses."""
+        """The output of the drivers' chips for these pins: voltages, or motors that coast between pulses."""
         self._last_outputs = pins.tobytes()
         enable, *values = pins.tolist()
         self._enabled = bool(enable)

@@ -205,7 +205,7 @@ def push(server: Server, joint: str, torque: str) -> CommandAnswer:
 
 
 def controls(server: Server) -> CommandAnswer:
-    """What can be changed while a bench runs, between which ends, and how it is now."""
+    """The things that can be changed while a bench runs, each with its range and its value now."""
     bench = server.bench
     low, high = (np.clip(ends, -FARTHEST_RAD, FARTHEST_RAD).tolist() for ends in stops_of(bench.plant))
     found: CommandAnswer = {

@@ -16,7 +16,7 @@ ELECTRICAL_S = 0.3e-3
 
 @dataclass(frozen=True)
 class Pins:
-    """What the board drives: duties 0..1, levels. A pin that the board does not drive is low: chips pull it down."""
+    """The pins that the board drives: duties 0..1, levels. One that it does not drive is low: chips pull it down."""
 
     enable: bool
     pwm: float  # or the first of two PWM inputs
@@ -139,7 +139,7 @@ def mean_volts(bridge: Bridge, supply_v: float, emf_v: float) -> float:
 
 
 def _pulsed(duty: float, supply: float, emf: float) -> float:
-    """The same for pulses one way and an open bridge between them; `emf` counts in the way of the pulses."""
+    """The mean for pulses one way and an open bridge between them; `emf` counts in the way of the pulses."""
     on = duty * PWM_S
     peak = (supply - emf) * _risen(on / ELECTRICAL_S)  # of the current, times the resistance
     against = math.copysign(supply, peak)

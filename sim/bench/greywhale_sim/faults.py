@@ -1,4 +1,4 @@
-"""What a person may do wrong with an arm, each by name: what it does to the bench, and which verb says so.
+"""The mistakes that a person may make with an arm, by name: the effect on the bench, and the verb that names it.
 
 The one list behind `greywhale sim --mistake`, the bench's command `mistake`, the site and the tests.
 """

@@ -72,7 +72,7 @@ class LeaderPlayer:
         self.bring_along([(leader, follower, seconds)])
 
     def bring_along(self, places: Sequence[Place]) -> None:
-        """The same to one place after another."""
+        """Bring held arms to one place after another."""
         if self.hold is None:
             raise UserError("the hands are on the arms only while the motors are off; stop them first.")
         self._streamed = None
@@ -108,7 +108,7 @@ class LeaderPlayer:
 
     @property
     def on_the_way(self) -> bool:
-        """Whether the hands have places to go to."""
+        """True while the hands have places to go to."""
         return bool(self._further) or self._off < self._let_go + self._way
 
     def _bring_next(self) -> None:

@@ -67,7 +67,7 @@ class LockStepBench(Closing):
 
 
 class _Port:
-    """What a SerialPort is to a server, in memory. Its DTR is up from the first opening on, as Arduinos' hosts have it.
+    """A serial port in memory, for a server. Its DTR is up from the first opening on, as Arduinos' hosts have it.
 
     The board is powered as the line is plugged in: the first opening finds it just started.
     """
@@ -82,7 +82,7 @@ class _Port:
         self._rises = False
 
     def open(self, restart: bool, baud: int) -> bool:
-        """Whether the board starts with it."""
+        """Open the port; True if the board starts with it."""
         if self.connected:
             raise PortBusyError(self.path)
         self.connected, self._baud = True, baud

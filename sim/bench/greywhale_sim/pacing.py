@@ -1,4 +1,4 @@
-"""How fast simulated time may run: in real time, or as fast as the machine and the host on the serial port can go.
+"""Paces simulated time: in real time, or as fast as the machine and the host on the serial port can go.
 
 As fast as possible has three exceptions. A bootloader and the host's flashing tool wait for each other by the clock, so
 a bootloader whose host is silent waits in real time. A bench to which nobody is connected idles in real time. Time
@@ -18,7 +18,7 @@ SILENCE_S = 0.05  # a bootloader takes 30 ms to take in a page and to write it
 def wants_real_time(
     fast: bool, connected: bool, in_bootloader: bool, host_baud: float, bootloader_baud: float, silent_s: float
 ) -> bool:
-    """Whether simulated time must keep to the wall clock now; the line has been `silent_s` without a byte."""
+    """True while simulated time must keep to the wall clock; the line has been `silent_s` without a byte."""
     at_bootloader = in_bootloader and host_baud == bootloader_baud
     return not fast or not connected or (at_bootloader and silent_s > SILENCE_S)
 

@@ -1,4 +1,4 @@
-"""What the drivers' pins have asked for at most: whether a motor was ever driven too hard, or for too long."""
+"""The most that the drivers' pins have asked for: tells if a motor was ever driven too hard, or for too long."""
 
 from __future__ import annotations
 

@@ -93,7 +93,7 @@ class SerialPort:
         return float(struct.unpack_from("I", settings, SPEED_OFFSET)[0])
 
     def read(self) -> bytes:
-        """What the host has written."""
+        """Bytes that the host has written."""
         try:
             return os.read(self._master, 4096)
         except BlockingIOError:
@@ -112,7 +112,7 @@ class SerialPort:
         return fitted
 
     def unread(self) -> int:
-        """How many bytes lie ready for the host; 0 only if it has read everything that was written."""
+        """The number of bytes that lie ready for the host; 0 only if it has read everything that was written."""
         # The kernel carries bytes to the host's side in its own time. Looking for them makes it do so at once.
         select.select([self._slave], [], [], 0)
         count: int = struct.unpack("i", fcntl.ioctl(self._slave, termios.FIONREAD, bytes(4)))[0]

@@ -76,7 +76,7 @@ def _open_port(options: ServeOptions, note: Callable[[str], None]) -> Port:
 
 
 def _is_new(options: ServeOptions) -> bool:
-    """Whether the board comes with the project's firmware and parameters that nobody has set."""
+    """True if the board comes with the project's firmware and parameters that nobody has set."""
     kept = options.eeprom is not None and options.eeprom.exists()
     return not options.blank and options.firmware is None and not kept
 
@@ -168,7 +168,7 @@ class Control:
 
 
 class ByHand(Control):
-    """The same for a person: answers in words, and a word when the hands are where they were sent."""
+    """Commands typed by a person: answers in words, and a word when the hands are where they were sent."""
 
     _arrives_s = math.inf
 

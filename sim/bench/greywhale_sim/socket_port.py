@@ -56,7 +56,7 @@ class SocketPort:
         return ANY_BAUD
 
     def read(self) -> bytes:
-        """What the host has written."""
+        """Bytes that the host has written."""
         if self._user is None:
             return b""
         try:
@@ -85,7 +85,7 @@ class SocketPort:
         return fitted
 
     def backlog(self, limit: int) -> int:
-        """What the system has not taken; what lies between it and the host cannot be seen."""
+        """The bytes that the system has not taken; what lies between it and the host cannot be seen."""
         return len(self._kept)
 
     def discard_unread(self) -> None:

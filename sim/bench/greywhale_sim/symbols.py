@@ -15,7 +15,7 @@ EEPROM_BASE = 0x810000
 
 
 class Symbol(NamedTuple):
-    """Where a name lives, as Board.peek, poke and call take it: a data address or a flash byte address."""
+    """The place of a name, as Board.peek, poke and call take it: a data address or a flash byte address."""
 
     address: int
     size: int

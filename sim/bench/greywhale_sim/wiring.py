@@ -1,4 +1,4 @@
-"""Which wire of the arm is on which pin of the board: one table per board, the same as in README.md.
+"""The wires of the arm and their pins on the board: one table per board, as in README.md.
 
 Leader potentiometers are on A0..A3 and follower potentiometers on A4..A7 of both boards.
 """
