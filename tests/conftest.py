@@ -1,5 +1,5 @@
-"""What holds for every test: each error is one whole sentence, children hear signals, and nobody else's temporary files
-are in sight. Under `-n`: how rooms of tests are shared out among workers.
+"""Checks and helps every test: each error is one whole sentence, children hear signals, and nobody else's temporary
+files are in sight. Under `-n`: shares rooms of tests out among workers.
 """
 
 from __future__ import annotations
@@ -34,8 +34,9 @@ def pytest_configure() -> None:
 
 @pytest.hookimpl(wrapper=True)
 def pytest_collection() -> Generator[None, object, object]:
-    """What is collected lives to the end, and tests leave few dead objects in rings: to look for them all the time
-    would take a third of the collection and a fortieth of the tests.
+    """Collect without a search for garbage: it would take a third of the time, and a fortieth of that of the tests.
+
+    Collected things live to the end, and tests leave few dead objects in rings.
     """
     gc.disable()
     try:
@@ -51,7 +52,7 @@ HOLE = re.compile(r"``|(?<!\w)\(\)|\bNone\b|\{\w+\}|  |^:|: [.:]")
 
 
 def is_sentence(message: str) -> bool:
-    """Whether an error is one printable line that ends, with a value wherever it has room for one."""
+    """True if an error is one printable line that ends, with a value wherever it has room for one."""
     return message.isprintable() and message.endswith((".", "?")) and not HOLE.search(message)
 
 
@@ -120,7 +121,7 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
 
 
 def _place(room: str) -> int:
-    """Where a worker begins with it; a room within one of LONGEST begins with that one."""
+    """The rank by which a worker begins with it; a room within one of LONGEST begins with that one."""
     return next((place for place, one in enumerate(LONGEST) if f"{room}/".startswith(f"{one}/")), len(LONGEST))
 
 

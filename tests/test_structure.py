@@ -219,12 +219,12 @@ def docstrings(path: Path) -> Iterator[tuple[str, str]]:
 
 
 def test_docstrings_say_what_a_thing_is_or_does() -> None:
-    package = SOURCE / "greywhale"
-    rooms = {path: str(path.relative_to(package)) for path in package.rglob("*.py")}
+    packages = (SOURCE / "greywhale", ROOT / "sim/bench/greywhale_sim", ROOT / "tools")
     assert [
-        f"{room}: {name}: {text.splitlines()[0]}"
-        for path, room in rooms.items()
-        if not room.startswith(WITH_QUESTIONS)
+        f"{path.relative_to(ROOT)}: {name}: {text.splitlines()[0]}"
+        for package in packages
+        for path in package.rglob("*.py")
+        if not str(path.relative_to(package)).startswith(WITH_QUESTIONS)
         for name, text in docstrings(path)
         if QUESTIONS.match(text)
     ] == []

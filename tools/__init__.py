@@ -1,4 +1,4 @@
-"""What builds, generates, proves, benchmarks and attacks greywhale; nothing of it is installed."""
+"""Programs that build, generate, prove, benchmark and attack greywhale; nothing of it is installed."""
 
 from pathlib import Path
 

@@ -51,17 +51,17 @@ COMPILE = (
 
 
 def runtime() -> list[str]:
-    """What the package asks for when it is installed."""
+    """The packages that an installed greywhale asks for."""
     return _names_of("project", "dependencies")
 
 
 def build() -> list[str]:
-    """What a checkout asks for to be built and run, its firmware included."""
+    """The packages that a checkout asks for to be built and run, its firmware included."""
     return [*runtime(), *_names_of("project", "optional-dependencies", "build"), *group("build")]
 
 
 def wanted() -> list[str]:
-    """What the package asks for to be built, run, checked and tested."""
+    """The packages that greywhale asks for to be built, run, checked and tested."""
     return [*build(), *group("dev")]
 
 
@@ -77,7 +77,7 @@ def versions() -> list[str]:
 
 
 def _names_of(*keys: str) -> list[str]:
-    """What pyproject.toml asks for under these keys."""
+    """The packages that pyproject.toml lists under these keys."""
     table: Any = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
     for key in keys:
         table = table[key]

@@ -109,7 +109,7 @@ def closed_form() -> tuple[sp.Matrix, sp.Matrix]:
 
 
 def is_zero(expression: sp.Expr) -> bool:
-    """Whether it is zero for all angles: in exponentials, every identity of sines and cosines is an expansion."""
+    """True if it is zero for all angles: in exponentials, every identity of sines and cosines is an expansion."""
     turns = sp.symbols("t0:4")
     exponential = {}
     for angle, turn in zip(q, turns, strict=True):

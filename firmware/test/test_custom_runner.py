@@ -1,4 +1,4 @@
-"""How PlatformIO runs the suites: doctest programs on this computer, on-target ones with test_testing_command.
+"""Runs the suites for PlatformIO: doctest programs on this computer, on-target ones with test_testing_command.
 
 An on-target suite prints Unity's lines (`file.cpp:12:name:PASS`, `...:FAIL: why`, at its end `3 Tests 0 Failures 0
 Ignored`) but needs no Unity. A suite passes only if it ran to its end and every case it counts was heard.
@@ -67,7 +67,7 @@ class CustomTestRunner(TestRunnerBase):
             self.stage_building()
 
     def command(self):
-        """What to start: the setting of the environment, or the program built for this computer."""
+        """The command to start: the setting of the environment, or the program built for this computer."""
         build = Path(self.project_config.get("platformio", "build_dir")) / self.test_suite.env_name
         custom = self.project_config.get(f"env:{self.test_suite.env_name}", "test_testing_command")
         return [*(custom or [str(build / "program"), "--reporters=junit"]), *(self.options.program_args or [])]

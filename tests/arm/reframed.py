@@ -1,4 +1,4 @@
-"""The same arm as another URDF: each link in a frame of its own, axes that point the other way, another zero pose."""
+"""Writes an arm as another URDF: each link in a frame of its own, axes the other way, another zero pose."""
 
 from __future__ import annotations
 

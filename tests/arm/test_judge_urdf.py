@@ -1,4 +1,4 @@
-"""What a URDF says is judged by what it would mean; what is odd is imported, and nothing changes without a word."""
+"""URDFs are judged by what they would mean; what is odd is imported, and nothing changes without a word."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What used arms have besides: friction that grows with load, creep, a sagging supply, play and lag at the pots.
+"""Effects of use: friction that grows with load, creep, a sagging supply, play and lag at the pots.
 
 Each is compared with a formula, or with an integration by SciPy of the same physics written down anew.
 """
@@ -109,7 +109,7 @@ def test_supply_sags_as_its_circuit_says(make_arm: Any, rigid: Any) -> None:
 
 
 def test_braking_motor_feeds_the_others(make_arm: Any, rigid: Any) -> None:
-    """What a motor that runs against its voltage gives back lifts the voltage that another one gets."""
+    """A motor that runs against its voltage gives current back, which lifts the voltage that another one gets."""
     friction = {"coulomb": 0.0, "breakaway": 0.0}
     parameters = roll_arm(make_arm, friction, rigid["gear"], drive={"supply": 12.0, "supply_resistance": 1.0})
     pushed, still = Arm(parameters), Arm(parameters)

@@ -46,7 +46,7 @@ def test_every_fault_turns_the_motors_off_in_time_and_is_named(board: str, seed:
 
 @pytest.mark.slow
 def test_a_follower_that_reads_its_neighbour_is_told_at_once_where_the_two_differ() -> None:
-    """Where they do not, it is a frozen pot: docs/firmware.md says what that costs."""
+    """If the two read alike, it is a frozen pot: docs/firmware.md says what that costs."""
     row = run({"board": "nano", "seed": 2, "trials": 4, "faults": ["follower reads neighbour"]})
     found = add_up(row)[0]
     assert set(found.counts) <= {"speed", "runaway", "tracking", "motors stayed on"}

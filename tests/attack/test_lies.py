@@ -27,8 +27,8 @@ def true(seconds: float, rate: float) -> Floats:
     return np.asarray(0.1 + rate * seconds * SHARES)
 
 
-def told(name: str, seconds: float, rate: float = 0.3) -> Floats:
-    """What the readings of an arm make of that, where a lie at joint 1 began at 0 s."""
+def readings(name: str, seconds: float, rate: float = 0.3) -> Floats:
+    """The readings (rad) of an arm after so many seconds, where a lie at joint 1 began at 0 s."""
     arm: Any = SimpleNamespace(pot_fault=None, motor_signs=np.ones(4), random=np.random.default_rng(1))
     slow_lies()[name](arm, 1)
     for step in range(round(seconds / SLICE_S) + 1):
@@ -54,21 +54,21 @@ def told(name: str, seconds: float, rate: float = 0.3) -> Floats:
     ],
 )
 def test_a_reading_is_wrong_by_what_the_name_says(name: str, pot: int, expected: float) -> None:
-    found = told(name, 1.0)
+    found = readings(name, 1.0)
     assert found[pot] == pytest.approx(expected, abs=0.02)
     other = ({FOLLOWER, NEXT, LEADER} if "frozen" in name else {pot}).symmetric_difference(range(8))
     assert found[list(other)] == pytest.approx(true(1.0, 0.3)[list(other)])
 
 
 def test_the_first_row_says_what_an_arm_does_that_nothing_is_wrong_with() -> None:
-    assert told(next(iter(slow_lies())), 1.0) == pytest.approx(true(1.0, 0.3))
+    assert readings(next(iter(slow_lies())), 1.0) == pytest.approx(true(1.0, 0.3))
 
 
 def test_plugs_are_exchanged_from_where_both_read_alike() -> None:
     for name, other in (("follower exchanged with the next", NEXT), ("follower exchanged with its leader", LEADER)):
         angles = true(1.0, 0.3)
-        assert told(name, 1.0)[[FOLLOWER, other]] == pytest.approx(angles[[other, FOLLOWER]])
-        apart = told(name, 0.0)
+        assert readings(name, 1.0)[[FOLLOWER, other]] == pytest.approx(angles[[other, FOLLOWER]])
+        apart = readings(name, 0.0)
         assert apart == pytest.approx(true(0.0, 0.3))
 
 

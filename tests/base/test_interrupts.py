@@ -16,7 +16,7 @@ from greywhale.board.device import hold_ctrl_c
 
 
 class EndedError(Exception):
-    """What SIGTERM raises here, as in the command line."""
+    """Raised by SIGTERM here, as in the command line."""
 
 
 @pytest.fixture(autouse=True)

@@ -1,4 +1,4 @@
-"""What greywhale starts, and what that starts in turn, imports nothing from the current folder."""
+"""Programs that greywhale starts, and those that they start in turn, import nothing from the current folder."""
 
 from __future__ import annotations
 

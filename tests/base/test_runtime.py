@@ -47,7 +47,7 @@ def test_benches_are_found_in_the_second_folder_too(tmp_path: Path, monkeypatch:
 
 
 def take_the_name(kind: str) -> Path:
-    """What another user, or a careless one, may put in the folder's place."""
+    """Put something in the folder's place, as another user or a careless one may."""
     (folder,) = runtime_directories()
     match kind:
         case "open":

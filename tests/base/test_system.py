@@ -1,4 +1,4 @@
-"""What differs between systems: devices and terminals here, and a system that has only what Windows has."""
+"""Differences between systems: devices and terminals here, and a system that has only what Windows has."""
 
 from __future__ import annotations
 

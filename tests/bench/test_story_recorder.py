@@ -1,4 +1,4 @@
-"""How the story records: a joint that hunts ends its recording, and the next one can begin."""
+"""The story's recorder: a joint that hunts ends its recording, and the next one can begin."""
 
 from __future__ import annotations
 

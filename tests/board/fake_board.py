@@ -32,7 +32,7 @@ _numbers = itertools.count()
 
 @dataclass
 class Faults:
-    """What goes wrong."""
+    """Things that go wrong."""
 
     silent: bool = False
     chatter: bytes = b""  # said over and over until it answers a request: opening a port drops what was said before
@@ -107,7 +107,7 @@ class FakeBoard:
         del LINES[self.port]
 
     def asked(self, request: type[Message]) -> int:
-        """How many frames of this request arrived, repeats included."""
+        """The number of frames of this request that arrived, repeats included."""
         return sum(1 for kind, _ in self.requests if kind == request.TYPE)
 
     @property

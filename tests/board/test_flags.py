@@ -1,4 +1,4 @@
-"""What many verbs share names no option of one of them: its sentences come from any."""
+"""Code that many verbs share names no option of one of them: its sentences come from any."""
 
 from __future__ import annotations
 

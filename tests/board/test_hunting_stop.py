@@ -14,7 +14,7 @@ TICKS = np.arange(4000)
 
 
 def stopped_at(leader: np.ndarray, follower: np.ndarray, every: int = 1) -> float | None:
-    """When the watch stops joint 2 (s), None where it never does; the other joints rest."""
+    """The time (s) at which the watch stops joint 2, None if it never does; the other joints rest."""
     watch = HuntingStop()
     for tick in TICKS[::every]:
         angles = [[0, 0, 0, 0], [0, 0, 0, 0]]

@@ -33,7 +33,7 @@ STOPPED = {"pid": os.getpid(), "state": "disabled"}
 
 
 def names(board: PortBoard) -> list[str]:
-    """Where a session on the board may listen."""
+    """The names at which a session on the board may listen."""
     device = system.device_of(board.port)
     assert device is not None
     return meeting.names_of(device)

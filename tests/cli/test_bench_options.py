@@ -1,4 +1,4 @@
-"""What `greywhale dashboard --sim` is told of a bench reaches the bench; what `greywhale stop` says of its holder."""
+"""Bench options of `greywhale dashboard --sim` reach the bench; `greywhale stop` names its holder."""
 
 from __future__ import annotations
 

@@ -32,7 +32,7 @@ def terminal(width: int, height: int) -> Console:
 
 
 def last_frame(console: Console) -> str:
-    """What stands on the terminal now, as one line."""
+    """The text that stands on the terminal now, as one line."""
     assert isinstance(console.file, io.StringIO)
     return " ".join(console.file.getvalue().rpartition(ERASE)[2].split())
 

@@ -1,4 +1,4 @@
-"""What a verb prints arrives in any encoding that a terminal may have; a mark stands for what the encoding lacks."""
+"""Output of a verb arrives in any encoding that a terminal may have; a mark stands for what the encoding lacks."""
 
 from __future__ import annotations
 

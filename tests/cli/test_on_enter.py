@@ -18,7 +18,7 @@ PATIENCE_S = 60.0
 
 @pytest.fixture
 def keyboard(monkeypatch: pytest.MonkeyPatch) -> Iterator[int]:
-    """Where keys arrive that a person presses at this process's terminal."""
+    """The end at which keys arrive that a person presses at this process's terminal."""
     keys, terminal = os.openpty()
     with open(terminal, encoding="utf-8") as typed:
         monkeypatch.setattr("sys.stdin", typed)

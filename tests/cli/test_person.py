@@ -33,7 +33,7 @@ def typed(monkeypatch: pytest.MonkeyPatch) -> Iterator[Typing]:
 
 @pytest.fixture
 def piped(monkeypatch: pytest.MonkeyPatch) -> Iterator[Typing]:
-    """The same for a script."""
+    """Lines of a script, through a pipe."""
     out, into = os.pipe()
     with os.fdopen(out, encoding="utf-8") as stdin:
         monkeypatch.setattr("sys.stdin", stdin)

@@ -22,7 +22,7 @@ Captured = pytest.CaptureFixture[str]
 
 
 def everything(seen: int) -> str:
-    """What was written to a terminal whose other end is closed by now; it comes in pieces of any size."""
+    """All that was written to a terminal whose other end is closed by now; it comes in pieces of any size."""
     text = b""
     with contextlib.suppress(OSError):  # nothing more to come
         while piece := os.read(seen, 65536):
@@ -55,7 +55,7 @@ def test_a_terminal_that_cannot_move_its_cursor_gets_lines(monkeypatch: pytest.M
 
 
 def told(monkeypatch: pytest.MonkeyPatch, **options: bool) -> str:
-    """What a pipe gets of two steps."""
+    """The output of two steps to a pipe."""
     pipe = io.StringIO()
     monkeypatch.setattr(sys, "stderr", pipe)
     with progress(**options) as report:

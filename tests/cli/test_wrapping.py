@@ -40,7 +40,7 @@ def test_a_command_is_copied_from_one_line_where_one_can_hold_it() -> None:
 
 
 def seen_on(width: int, monkeypatch: pytest.MonkeyPatch, stream: str, arguments: list[str]) -> str:
-    """What a terminal of that width gets of a command."""
+    """The output of a command on a terminal of that width."""
     seen, inner = pty.openpty()
     termios.tcsetwinsize(inner, (24, width))
     with os.fdopen(inner, "w", encoding="utf-8") as terminal:

@@ -1,4 +1,4 @@
-"""What a browser's page does towards the server, without a browser: requests and WebSockets over the loopback."""
+"""Behaves towards the server like a browser's page, without a browser: requests and WebSockets over the loopback."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ class Page:
             connection.close()
 
     def get(self, path: str) -> Any:
-        """What the server tells in JSON."""
+        """The server's answer in JSON."""
         status, body = self.ask("GET", path)
         assert status == 200, body
         return json.loads(body)

@@ -76,7 +76,7 @@ class Shared:
 
 
 class Viewer:
-    """What a page has got so far: words, answers and the bytes of samples."""
+    """A page's haul so far: words, answers and the bytes of samples."""
 
     def __init__(self, shared: Shared, verb: str | None = None) -> None:
         self._shared = shared

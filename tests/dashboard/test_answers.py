@@ -1,4 +1,4 @@
-"""What a page asks beside the board: files, the arm, controllers and what a model predicts for them."""
+"""A page's questions beside the board: files, the arm, controllers and what a model predicts for them."""
 
 from __future__ import annotations
 

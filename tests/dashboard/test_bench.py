@@ -1,4 +1,4 @@
-"""What a page does to the simulated bench: each wish does what it says, and what is none changes nothing."""
+"""A page's wishes to the simulated bench: each does what it says, and what is none changes nothing."""
 
 from __future__ import annotations
 

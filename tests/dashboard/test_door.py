@@ -1,4 +1,4 @@
-"""Who may stay connected, and who has to go when too many come: by a clock of the test's own."""
+"""The door decides who stays connected, and who goes when too many come: by a clock of the test's own."""
 
 from __future__ import annotations
 

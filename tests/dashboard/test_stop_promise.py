@@ -26,12 +26,12 @@ AGAIN = "start the verb again when the arm may move."
 
 
 def on(viewer: Viewer) -> bool:
-    """Whether any sample since the last look says that the motors run."""
+    """True if any sample since the last look says that the motors run."""
     return any(one.state not in (schema.State.DISABLED, schema.State.FAULT) for one in viewer.samples())
 
 
 def begun(viewer: Viewer) -> int:
-    """How often the motors were started since the last look."""
+    """The number of times that the motors were started since the last look."""
     states = [one.state in (schema.State.DISABLED, schema.State.FAULT) for one in viewer.samples()]
     return sum(off and not after for off, after in zip([True, *states], states, strict=False))
 

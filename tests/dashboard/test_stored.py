@@ -1,4 +1,4 @@
-"""What a board stores, by what it says: at its start, and when it has written a set and read it back."""
+"""The set that a board stores, by what it says: at its start, and when it has written a set and read it back."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What every verb really prints with --json is what its schema says, which is made from the type of its answer."""
+"""Every verb really prints with --json what its schema says, which is made from the type of its answer."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ known = functools.cache(schemas)
 
 
 def read_answer(text: str) -> Any:
-    """What a verb printed with --json: one line that holds one object, without the NaN that Python would let pass."""
+    """The JSON that a verb printed: one line that holds one object, without the NaN that Python would let pass."""
     if text.count("\n") != 1:
         raise ValueError(f"{text.count(chr(10))} lines, where there must be one")
     return json.loads(text, parse_constant=_refuse)
@@ -90,7 +90,7 @@ def test_a_schema_describes_its_keys_and_knows_no_other_types() -> None:
 
 
 def spoilt(answer: Any) -> Iterator[Any]:
-    """The same with something else in the place of one part, wherever that stands, or with a key too many."""
+    """Copies with something else in the place of one part, wherever that stands, or with a key too many."""
     odd: list[Any] = [[[[]]]]
     yield odd
     if isinstance(answer, dict):

@@ -33,7 +33,7 @@ SECOND = ",".join(f"{angle:g}" for angle in SECOND_DEG)
 
 
 def ask(capsys: pytest.CaptureFixture[str], *words: str) -> dict[str, Any]:
-    """What a verb prints with --json; it must succeed."""
+    """The JSON of a verb, which must succeed."""
     capsys.readouterr()
     code = run([*words, "--json"])
     told = capsys.readouterr()

@@ -61,7 +61,7 @@ class BadCable:
     """The line to a bench, which loses a byte of some pages on their way there, and of some on their way back."""
 
     def __init__(self, line: Line, lost: list[str], pages: list[int]) -> None:
-        """What was lost and the pages that were written are counted over all openings of the port."""
+        """Losses and written pages are counted over all openings of the port."""
         self.line, self.lost, self.pages = line, lost, pages
         self.restarted, self.close, self.clock, self.wait = line.restarted, line.close, line.clock, line.wait
         self._reads = False

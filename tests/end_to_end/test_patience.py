@@ -35,7 +35,7 @@ def worn() -> ArmParameters:
 
 
 def travel(arm: ArmParameters) -> dict[str, int]:
-    """What `greywhale tune` says of an arm, were its model exact."""
+    """The travel by `greywhale tune` of an arm whose model is exact."""
     found = travel_of(arm, ParameterTable.defaults(), samples=1)
     assert found is not None
     return found.raw()

@@ -1,4 +1,4 @@
-"""Where a log goes that a test writes."""
+"""The path of a log that a test writes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which rows show motors at work, and what is told of a log or a joint that lacks its voltage."""
+"""Rows that show motors at work, and the words about a log or a joint that lacks its voltage."""
 
 from __future__ import annotations
 

@@ -26,7 +26,7 @@ MOTION_MV = 2500.0 + 900.0 * np.sin(
 
 @dataclass
 class Counts:
-    """What has happened; `lost_in_apply` are samples that may be missing while a set is applied."""
+    """Counts of all that has happened; `lost_in_apply` are samples that may be missing while a set is applied."""
 
     requests: int = 0
     unanswered: int = 0

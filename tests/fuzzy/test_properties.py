@@ -1,4 +1,4 @@
-"""What the law promises, checked on the exact reference and on the integers."""
+"""Promises of the law, checked on the exact reference and on the integers."""
 
 from __future__ import annotations
 

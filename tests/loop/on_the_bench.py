@@ -44,7 +44,7 @@ class Recording:
 
 
 def quiet(parameters: ArmParameters) -> ArmParameters:
-    """The same arm with potentiometers that make no noise."""
+    """A copy of the arm with potentiometers that make no noise."""
     silent = {"joint": {"noise": 0.0}}
     return make_arm(parameters, leader_pots=silent, follower_pots=silent)
 

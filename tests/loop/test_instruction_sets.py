@@ -1,4 +1,4 @@
-"""What is compiled for one instruction set never runs in place of another's, on a processor that may lack it."""
+"""Code for one instruction set never runs in place of another's, on a processor that may lack it."""
 
 from __future__ import annotations
 

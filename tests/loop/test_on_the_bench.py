@@ -1,4 +1,4 @@
-"""What is simulated natively is what the compiled firmware does on the bench, also with a worn arm."""
+"""The native simulation does what the compiled firmware does on the bench, also with a worn arm."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a wrong experiment gets: one sentence that says what is wrong, and nothing converted unasked."""
+"""A wrong experiment gets one sentence that says what is wrong, and nothing is converted unasked."""
 
 from __future__ import annotations
 

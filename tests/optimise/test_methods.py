@@ -1,4 +1,4 @@
-"""What holds for every method: exact budgets, bounds, repeatable and movable runs, batches as maps, failing costs."""
+"""Every method keeps these: exact budgets, bounds, repeatable and movable runs, batches as maps, failing costs."""
 
 from __future__ import annotations
 

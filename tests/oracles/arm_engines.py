@@ -19,7 +19,7 @@ def arm_with_tip() -> ArmParameters:
 
 
 def without(arm: ArmParameters, used: tuple[int, ...]) -> ArmParameters:
-    """The same arm with all but these joints rigid."""
+    """A copy of the arm with all but these joints rigid."""
     joints = tuple(one.model_copy(update={"fixed": n not in used}) for n, one in enumerate(arm.joint))
     return arm.model_copy(update={"joint": joints})
 

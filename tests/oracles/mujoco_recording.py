@@ -31,7 +31,7 @@ USUAL_SOFTNESS = (0.02, 1.0), (0.9, 0.95, 0.001, 0.5, 2.0)  # of MuJoCo's fricti
 
 
 class Board:
-    """What the firmware does with four conversions a tick: filter, scale, control."""
+    """The firmware's work on four conversions a tick: filter, scale, control."""
 
     def __init__(self, table: ParameterTable) -> None:
         self._supply = table["supply_mv"]

@@ -133,7 +133,7 @@ def written(calls: list[Call]) -> bytes:
 
 
 def read(calls: list[Call], data: bytes) -> list[dict[str, Array]]:
-    """What the driver wrote, call by call, in the shapes and types of the results here."""
+    """The driver's output, call by call, in the shapes and types of the results here."""
     found, offset = [], 0
     for call in calls:
         results = {}

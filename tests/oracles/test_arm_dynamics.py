@@ -69,7 +69,7 @@ def loaded(parameters: ArmParameters) -> tuple[mujoco.MjModel, mujoco.MjData]:
 
 
 def rigid(arm: ArmParameters, friction: bool) -> ArmParameters:
-    """The same arm with what MJCF has no words for left out: no gaps and play, no excess of friction at rest."""
+    """A copy of the arm without what MJCF has no words for: no gaps and play, no excess of friction at rest."""
     data = arm.model_dump()
     for joint in data["joint"]:
         sliding = joint["friction"]["coulomb"] if friction else 0.0
@@ -81,7 +81,7 @@ def rigid(arm: ArmParameters, friction: bool) -> ArmParameters:
 
 
 def apart(parameters: ArmParameters, longest_step: float, used: tuple[int, ...] = (0, 1, 2, 3)) -> float:
-    """How far the two are apart at most (rad) in 1 s of changing voltages; the file has the joints in use."""
+    """The greatest distance of the two (rad) in 1 s of changing voltages; the file has the joints in use."""
     model, data = loaded(parameters)
     joints = list(used)
     arm = Arm(parameters, longest_step=longest_step)
@@ -153,7 +153,7 @@ def test_two_readers_of_urdf_see_the_same_links_and_rods(used: tuple[int, ...]) 
 
 
 def geom_centres(model: mujoco.MjModel) -> np.ndarray:
-    """Where the rods are in a bent pose, (4, 3)."""
+    """The centres of the rods in a bent pose, (4, 3)."""
     data = mujoco.MjData(model)
     data.qpos[:] = 0.4
     mujoco.mj_forward(model, data)

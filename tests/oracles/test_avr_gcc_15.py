@@ -33,7 +33,7 @@ class Compiler:
         self.chips = json.loads(toolchain.FLAGS_TABLE.read_text(encoding="utf-8"))
 
     def compile(self, source: str, chip: str) -> str:
-        """What the compiler says to a file: nothing where all is well."""
+        """The compiler's words on a file: none if all is well."""
         rooms = [f"-I/firmware/lib/{room.name}/src" for room in sorted((FIRMWARE / "lib").iterdir())]
         config, store = wasmtime.WasiConfig(), wasmtime.Store(self.engine)
         flags = (*self.chips[chip]["flags"], *HEADERS, *rooms, *DEFINES, *STYLE, *STRICT)

@@ -35,7 +35,7 @@ def test_an_arm_of_another_engine_follows_better_and_rests(tmp_path: Path) -> No
 
 
 def tried(done: Commissioned) -> str:
-    """What the arm said about every trial: without it a failure elsewhere could not be understood."""
+    """The arm's words about every trial: without them a failure elsewhere could not be understood."""
     trials = (
         f"{one.name} {one.stopped} {[verdict.faults for verdict in one.verdicts]}" for one in done.outcome.trials.done
     )

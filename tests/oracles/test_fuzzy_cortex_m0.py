@@ -1,4 +1,4 @@
-"""The same core on a 32-bit Cortex-M0, under qemu: the same bits as on this machine and on the AVR."""
+"""The core on a 32-bit Cortex-M0, under qemu, gives the bits of this machine and of the AVR."""
 
 from __future__ import annotations
 

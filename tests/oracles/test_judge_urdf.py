@@ -1,4 +1,4 @@
-"""Which inertias a body can have, by MuJoCo's compiler; and what odd arms weigh, by Pinocchio's reader of the file."""
+"""Inertias that a body can have, by MuJoCo's compiler; weights of odd arms, by Pinocchio's reader of the file."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def mujoco_takes(inertia: np.ndarray) -> bool:
 
 
 def margin(inertia: np.ndarray) -> float:
-    """How far it is from the edge of what a body can have, as a share of its largest moment."""
+    """The distance from the edge of what a body can have, as a share of its largest moment."""
     moments = np.linalg.eigvalsh(inertia)
     return float(min(abs(moments[0]), abs(moments[0] + moments[1] - moments[2])) / np.abs(moments).max())
 

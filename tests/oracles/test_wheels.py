@@ -1,4 +1,4 @@
-"""What a user installs with pip is whole: in an empty environment without compiler, PlatformIO and checkout, it works.
+"""A pip installation is whole: in an empty environment without compiler, PlatformIO and checkout, it works.
 
 The wheel is built from the source distribution, as a stranger's pip would do it, and nothing is fetched. Where it is
 for the stable ABI, it is installed into the Pythons that GREYWHALE_OTHER_PYTHONS names as well.

@@ -1,4 +1,4 @@
-"""What the built images say about themselves is true, and images of other sources are told apart."""
+"""The built images say the truth about themselves, and images of other sources are told apart."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ PARTS = ("src", "lib", "platformio.ini", "image_record.py", "source_digest.py", 
 
 
 def check(firmware: Path, *images: Path) -> subprocess.CompletedProcess[str]:
-    """What source_digest.py of that firmware folder says to the images."""
+    """The words of that firmware folder's source_digest.py on the images."""
     command = [sys.executable, "-B", str(firmware / "source_digest.py"), *map(str, images)]
     return subprocess.run(command, capture_output=True, text=True, check=False)
 

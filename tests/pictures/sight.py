@@ -1,4 +1,4 @@
-"""What a person would see wrong in a picture, found by its renderer."""
+"""Finds what a person would see wrong in a picture, by its renderer."""
 
 from __future__ import annotations
 

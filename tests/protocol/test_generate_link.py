@@ -26,7 +26,7 @@ GENERATED = [
 
 
 class Done(NamedTuple):
-    """How `python -m tools.generate.link` ended."""
+    """The end of `python -m tools.generate.link`."""
 
     code: int
     out: list[str]

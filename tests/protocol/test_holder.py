@@ -1,4 +1,4 @@
-"""Who has a port: named as far as the system tells."""
+"""The holder of a port is named as far as the system tells."""
 
 from __future__ import annotations
 

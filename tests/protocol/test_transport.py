@@ -67,7 +67,7 @@ def line(terminal: Terminal) -> Iterator[Transport]:
 
 
 def steal(*_: object) -> bytes:
-    """What pyserial says when somebody else was quicker, and when a cable is out."""
+    """Fail as pyserial does when somebody else was quicker, and when a cable is out."""
     raise serial.SerialException(
         "device reports readiness to read but returned no data (device disconnected or multiple access on port?)"
     )

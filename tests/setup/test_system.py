@@ -1,4 +1,4 @@
-"""What the set-up says of a system that lacks something: one sentence, with what to do."""
+"""The set-up says of a system that lacks something: one sentence, with what to do."""
 
 from __future__ import annotations
 

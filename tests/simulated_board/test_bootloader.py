@@ -1,4 +1,4 @@
-"""What a bootloader can do to the simulated flash, and how long it takes. Both boards are flashed through theirs in
+"""Writes of a bootloader to the simulated flash, and their time. Both boards are flashed through their bootloaders in
 tests/end_to_end/test_flashing.py, and by avrdude in tests/oracles/test_avrdude.py.
 """
 

@@ -1,4 +1,4 @@
-"""What the CPU does at the end of the flash, and with the instructions it skips. Every instruction is compared with
+"""The CPU at the end of the flash, and with the instructions it skips. Every instruction is compared with
 another simulator's in tests/oracles/test_simavr_cpu.py.
 """
 

@@ -1,4 +1,4 @@
-"""The same bytes at the same cycles give the same behaviour, to the cycle, however the run is cut up."""
+"""Equal bytes at equal cycles give equal behaviour, to the cycle, however the run is cut up."""
 
 from __future__ import annotations
 

@@ -38,7 +38,7 @@ def test_hex_data_goes_where_its_base_address_says(tmp_path: Path) -> None:
 
 
 def test_a_program_without_room_is_one_sentence_and_nothing_of_it_is_written(tmp_path: Path) -> None:
-    """What else a HEX file may have wrong is in tests/board/flash/test_images.py."""
+    """Other faults of a HEX file are in tests/board/flash/test_images.py."""
     board = Board("atmega328p")
     path = write(tmp_path, record(0, 0, b"abc") + record(0, 0x8000, b"abc") + END)
     with pytest.raises(BoardError, match=rf"^{path} .*up to address 0x8002, but the ATmega328P has 32 KB of flash; "):

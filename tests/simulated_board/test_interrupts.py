@@ -1,4 +1,4 @@
-"""What an interrupt costs, in cycles, and in which order interrupts come."""
+"""Interrupts: their cost in cycles, and the order in which they come."""
 
 from __future__ import annotations
 

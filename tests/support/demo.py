@@ -15,7 +15,7 @@ from greywhale_sim.words import lock_step
 
 
 def in_this_process(patch: pytest.MonkeyPatch) -> None:
-    """How the firmware gets onto the board is in tests/end_to_end/test_flashing.py."""
+    """Flashing is left out: tests/end_to_end/test_flashing.py puts the firmware onto the board."""
     patch.setattr(story, "BenchProcess", flashed)
     patch.setattr(flash, "flash", greet)
 

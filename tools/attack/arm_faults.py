@@ -164,7 +164,7 @@ def person(seed: int) -> Leader:
 
 
 def tuned_travel() -> dict[str, int]:
-    """How far a voltage moves each joint, as `greywhale tune` works it out for the default arm, raw."""
+    """The travel of each joint for a voltage, as `greywhale tune` works it out for the default arm, raw."""
     travel = travel_of(default_arm(), ParameterTable.defaults(), samples=1)
     assert travel is not None
     return travel.raw()

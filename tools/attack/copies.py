@@ -11,7 +11,7 @@ T = TypeVar("T")
 
 
 def in_a_copy(work: Callable[[], T]) -> T:
-    """What `work` returns, done in a copy of this process; here everything stays as it was."""
+    """The result of `work`, done in a copy of this process; here everything stays as it was."""
     reader, writer = os.pipe()
     child = os.fork()
     if child == 0:

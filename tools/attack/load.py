@@ -23,7 +23,7 @@ MOST = 0.95  # of the time; the rest are moments at which smoothing is not true,
 
 
 class Watch:
-    """What a board reads and gives, slice by slice."""
+    """Watches a board's readings and voltages, slice by slice."""
 
     def __init__(self, arm: ArmOnBoard) -> None:
         self._arm = arm

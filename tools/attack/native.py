@@ -39,7 +39,7 @@ class Program:
 
 
 def depends(*programs: Program) -> tuple[str, ...]:
-    """What the results of these programs are about, for a part."""
+    """The files and folders that the results of these programs depend on, for a part."""
     own = {*SOURCES.glob("*.h"), *(SOURCES / f"{part}.cpp" for program in programs for part in program.parts)}
     return ("firmware/lib", "tools/attack/native.py", *sorted(str(file.relative_to(ROOT)) for file in own))
 

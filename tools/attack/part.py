@@ -11,7 +11,7 @@ Piece = dict[str, Any]  # JSON; says with its seed all that a piece depends on
 
 @dataclass(frozen=True)
 class Row:
-    """What one kind of trial came to. Rows of the same name are added up over all pieces of a part.
+    """The outcome of one kind of trial. Rows of the same name are added up over all pieces of a part.
 
     `violations` are the trials that broke what the part says must hold. `counts` add up, such as which fault was
     reported; of `worst` the greatest counts, such as milliseconds.

@@ -1,4 +1,4 @@
-"""What a potentiometer may tell that is not true; each lie is injected at a joint of the arm on a board."""
+"""False readings that a potentiometer may give; each is injected at a joint of the arm on a board."""
 
 from __future__ import annotations
 

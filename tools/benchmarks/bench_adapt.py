@@ -60,7 +60,7 @@ def loaded(seconds: float) -> ArmParameters:
 
 @dataclass(frozen=True)
 class Case:
-    """What the default arm has become after so many seconds of work, in our engine."""
+    """A course of the default arm's wear: the arm that it is after so many seconds of work, in our engine."""
 
     arm_at: ArmAt
 
@@ -134,7 +134,7 @@ SEARCH_BUDGET = int(os.environ.get("GREYWHALE_BUDGET", BUDGET))
 
 
 def unseen() -> Trajectory:
-    """What nobody trained on."""
+    """Motions that nobody trained on."""
     return human_reaches(91, 30.0)
 
 

@@ -50,7 +50,7 @@ def assembled(seed: int) -> float:
 
 
 def is_named(seed: int, name: str) -> bool:
-    """Whether its verb names a mistake of a random assembly, at the first try, and stores nothing it should not."""
+    """True if its verb names a mistake of a random assembly, at the first try, and stores nothing it should not."""
     fault = BY_NAME[name]
     places = WHERE[fault.on]
     arm = mounted_anyhow(seed)

@@ -46,7 +46,7 @@ def bench_with(kind: str, seed: int, folder: Path) -> LockStepBench:
 
 
 def followed(kind: str, seed: int) -> dict[str, Any]:
-    """How that arm follows before and after: a Run's fields each, the wall time, and the sets tried on it."""
+    """The arm's following before and after: a Run's fields each, the wall time, and the sets tried on it."""
     with tempfile.TemporaryDirectory() as name, bench_with(kind, seed, Path(name)) as bench:
         done = commissioned(bench, Path(name), motions())
     tried = len(done.outcome.trials.done) - 1

@@ -1,4 +1,4 @@
-"""Whether commission's check ranks controllers as a person's reaches do: rank correlations (Spearman) on worn arms.
+"""Compares how commission's check and a person's reaches rank controllers: Spearman correlations on worn arms.
 
 Each arm is drawn at random, with play at its potentiometers and friction that grows with the load. Its sets are the
 controllers from before, those of a short tuning, and variations of these by factors such as commission takes. The
@@ -68,7 +68,7 @@ def sets(arm: ArmParameters, seed: int) -> Iterator[Controllers]:
 
 
 def checked(arm: ArmParameters, check: Check, table: ParameterTable, seed: int) -> Measures:
-    """What commission measures of a table."""
+    """The measures that commission takes of a table."""
     experiment = Experiment(check.motion, arm, table=table, seed=seed, wait_s=WAIT_S, resample=True)
     found = experiment.run_exact(every=1)
     shown = readings_of(found.angles[0].astype(np.float64), arm, table, seed)

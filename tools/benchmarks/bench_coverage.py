@@ -1,4 +1,4 @@
-"""How often the stated 90 % intervals hold the truth: random arms that are identified from 30 s of their motion.
+"""Counts how often the stated 90 % intervals hold the truth, on random arms identified from 30 s of their motion.
 
 The constants of the intervals come from arms 1 to 12, so these are others. GREYWHALE_ARMS says how many (100); each
 takes most of a minute of one processor.

@@ -1,4 +1,4 @@
-"""What the dashboard's server costs while a page gets every tick, and how soon the page has the first one."""
+"""Measures the dashboard server's cost while a page gets every tick, and the time until a page has the first one."""
 
 from __future__ import annotations
 

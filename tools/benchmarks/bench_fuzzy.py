@@ -65,7 +65,7 @@ def _cycles() -> list[Figure]:
 
 
 def _float_cycles() -> list[Figure]:
-    """The same rules in float, as one would first write them."""
+    """Cycles of these rules in float, as one would first write them."""
     FLOAT_ELF.parent.mkdir(exist_ok=True)
     command = [
         avr_tool("avr-g++"),

@@ -1,5 +1,5 @@
-"""How near an identified model comes to an arm that it never saw: the default arm and ten random ones, starting from
-the white box.
+"""Measures the distance of an identified model from an arm that it never saw: the default arm and ten random ones,
+starting from the white box.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ def of_arm(arm: ArmParameters, seed: int) -> tuple[IdentificationResult, float]:
 
 
 def truth(outcome: IdentificationResult, arm: ArmParameters) -> float:
-    """What the true arm itself reaches on the changed record: where joints hunt, no model repeats every swing."""
+    """The true arm's own figures on the changed record: where joints hunt, no model repeats every swing."""
     subject, verdict = outcome.subjects[2], outcome.verdicts[2]
     assert subject.table is not None
     loop = Loop(subject.log, subject.table, outcome.white_box)
@@ -53,7 +53,7 @@ def truth(outcome: IdentificationResult, arm: ArmParameters) -> float:
 
 
 def of_random_arm(seed: int) -> dict[str, float]:
-    """How much better the model is than the white box, and the true arm itself; how long it took."""
+    """The gains of the model and of the true arm over the white box, and the time it took."""
     arm = random_arm(seed)
     outcome, seconds = of_arm(arm, seed)
     second, changed = (verdict.improvement for verdict in outcome.verdicts[1:3])

@@ -1,4 +1,4 @@
-"""How well `greywhale identify` predicts real recordings that it never saw, of three rigs with one joint each.
+"""Measures how well `greywhale identify` predicts recordings of three real rigs of one joint that it never saw.
 
 The recordings are other people's and not part of this project; docs/real_data.md says where they come from. Their
 folder is ../shared/data, or what GREYWHALE_REAL_DATA names.

@@ -1,4 +1,4 @@
-"""What a control tick costs on the simulated boards: cycles, jitter, time from pot to duty, memory with the stack."""
+"""Measures a control tick on the simulated boards: cycles, jitter, time from pot to duty, memory with the stack."""
 
 from __future__ import annotations
 

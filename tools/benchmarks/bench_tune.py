@@ -1,4 +1,4 @@
-"""Whether tuning works where it counts: the compiled firmware on the bench, with an arm that nobody was told about.
+"""Measures tuning where it counts: the compiled firmware on the bench, with an arm that the tuner knows nothing of.
 
 Everything goes through the serial port: practice recordings, identification from them, tuning on the identified
 model, upload; then the same motions as before tuning, measured as `greywhale evaluate` does. The logs stay in

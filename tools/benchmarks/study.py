@@ -32,7 +32,7 @@ def repeat(name: str, tasks: Sequence[Task], workers: int = 1) -> dict[str, Any]
 
 
 def threads() -> int:
-    """How many threads a task may use: all processors (0) in a process that works alone, one beside other workers."""
+    """The threads that a task may use: all processors (0) in a process that works alone, one beside other workers."""
     return 0 if multiprocessing.parent_process() is None else 1
 
 

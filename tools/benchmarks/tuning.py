@@ -1,4 +1,4 @@
-"""What the benchmarks of the tuning share: the motions it is judged on, and figures from measures before and after."""
+"""Shared by the benchmarks of the tuning: the motions to judge it on, and figures from measures before and after."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ SATURATED = 1e-4
 
 
 def motions() -> dict[str, Trajectory]:
-    """What nothing was trained on."""
+    """Motions that nothing was trained on."""
     return {"steps": steps(), "multi-steps": multi_steps(), "human reaches": human_reaches(1, 20.0)}
 
 

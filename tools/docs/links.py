@@ -40,7 +40,7 @@ def links(page: Path) -> Iterator[Link]:
 
 
 def broken(link: Link) -> str:
-    """What is wrong with a link inside of the project, "" for nothing."""
+    """The fault of a link inside of the project, "" for none."""
     path, _, anchor = link.target.partition("#")
     target = (link.page.parent / path).resolve() if path else link.page
     if not target.exists():

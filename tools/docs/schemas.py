@@ -27,7 +27,7 @@ KEY = re.compile(r"^    (\w+): .*?  # (.+)$", re.MULTILINE)
 
 
 def answers() -> dict[str, Any]:
-    """What each verb answers, by its words, and a failure under "error"."""
+    """The type that each verb answers with, by its words, and that of a failure under "error"."""
     found = {"error": Failure}
     for verb, command in _commands(greywhale):
         answer = getattr(command.callback, ANSWER)

@@ -1,4 +1,4 @@
-"""What a firmware image takes of the chip, and what it must not contain; read from the ELF."""
+"""Checks the memory that a firmware image takes of the chip, and what it must not contain; reads the ELF."""
 
 from __future__ import annotations
 

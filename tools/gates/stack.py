@@ -98,7 +98,7 @@ class Depths:
         return [address for name, address in self._program.symbols.items() if name.startswith(CONSTRUCTOR)]
 
     def _levels(self, graph: Graph) -> dict[int, Level]:
-        """What the stack holds before each instruction; the same on every path to it, or there is no bound."""
+        """The depth of the stack before each instruction; it must be one on every path, or there is no bound."""
         after = graph.followers()
         levels = {graph.entry: Level(0)}
         waiting = [graph.entry]

@@ -1,4 +1,4 @@
-"""What a control tick, or an interrupt, must not contain: a software division. What no image may hold: size.py."""
+"""Checks that no control tick and no interrupt contains a software division. size.py has what no image may hold."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What greywhale depends on, as wheels in build/wheelhouse: for installations in a test."""
+"""Collects greywhale's dependencies as wheels in build/wheelhouse: for installations in a test."""
 
 from __future__ import annotations
 

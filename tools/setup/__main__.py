@@ -38,7 +38,7 @@ def lock_folder() -> Iterator[None]:
 
 
 def tell_how_long() -> None:
-    """What a person waits for, where nothing is done yet (docs/setup.md has the times)."""
+    """Tell a person how long it takes, where nothing is done yet (docs/setup.md has the times)."""
     if not stamps.STAMPS.exists():
         say("the first time this takes about 2 minutes, on a busy or slow computer up to 6; after that a second")
 

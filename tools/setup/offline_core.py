@@ -97,7 +97,7 @@ def link(target: Path, place: Path) -> None:
 
 
 def package_folder(name: str) -> Path:
-    """Where a Python package lies."""
+    """The folder of a Python package."""
     found = find_spec(name)
     if found is None or not found.submodule_search_locations:
         raise SystemExit(f"The Python package {name} is missing: `make setup` installs it.")

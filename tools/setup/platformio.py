@@ -34,7 +34,7 @@ def registry_answers() -> bool:
 
 
 def pypi_has_compiler() -> bool:
-    """Whether tools/setup/compiler.txt has a wheel for this machine."""
+    """True if tools/setup/compiler.txt has a wheel for this machine."""
     return sys.platform != "linux" or (platform.machine() == "x86_64" and platform.libc_ver()[0] == "glibc")
 
 
@@ -56,7 +56,7 @@ def choose() -> str:
 
 
 def environment(core: Path = CORE) -> dict[str, str]:
-    """What PlatformIO needs in its environment, without a message to anybody and without waiting for updates."""
+    """PlatformIO's environment, in which it sends no message to anybody and waits for no updates."""
     quiet = {"PLATFORMIO_SETTING_ENABLE_TELEMETRY": "no", "PLATFORMIO_DISABLE_UPGRADE_CHECK": "true"}
     own = {"PLATFORMIO_CORE_DIR": str(core)} if (core / FINISHED).exists() else {}
     return {**venv.environment(), **quiet, **own}

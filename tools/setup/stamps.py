@@ -42,7 +42,7 @@ def forget(step: str = "") -> None:
 
 
 def is_current(step: str, value: str, strict: bool = False) -> bool:
-    """Whether the step was done for this value; what was done strictly serves others, too."""
+    """True if the step was done for this value; what was done strictly serves others, too."""
     stamp = STAMPS / step
     return stamp.is_file() and stamp.read_text() in {f"{value} strict", *(() if strict else (value,))}
 

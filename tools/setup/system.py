@@ -1,4 +1,4 @@
-"""What the operating system must bring, and how apt installs it; a system without apt is told what it lacks."""
+"""The packages that the operating system must bring, and their installation by apt, or a list of those that lack."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def cxx_compiler() -> str | None:
 
 
 def lacking() -> dict[str, str]:
-    """What every set-up needs and is not here, whoever should have installed it: Debian's package, and its name."""
+    """Each thing that every set-up needs and is not here, whoever installs it: Debian's package, and its name."""
     found = {}
     if cxx_compiler() is None:
         found["g++"] = "a C++ compiler (g++ or clang++)"

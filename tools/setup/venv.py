@@ -20,13 +20,13 @@ FOR_CHECKS = ROOT / "tools" / "requirements.txt"
 
 
 def site_packages() -> Path:
-    """Where its packages lie."""
+    """The folder of its packages."""
     (found,) = (VENV / "lib").glob("python*/site-packages")
     return found
 
 
 def environment() -> dict[str, str]:
-    """What commands of the .venv need: its programs first on the PATH."""
+    """The environment of the .venv's commands: its programs come first on the PATH."""
     return {"PATH": f"{VENV / 'bin'}{os.pathsep}{os.environ['PATH']}", "VIRTUAL_ENV": str(VENV)}
 
 
@@ -36,7 +36,7 @@ def pip_install(*arguments: str | Path, what: str) -> None:
 
 
 def works() -> bool:
-    """Whether .venv is there and belongs to this folder (a copied or moved one does not)."""
+    """True if .venv is there and belongs to this folder (a copied or moved one does not)."""
     if not PYTHON.exists():
         return False
     question = [str(PYTHON), "-c", "import pip, sys; print(sys.prefix)"]

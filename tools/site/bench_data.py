@@ -1,4 +1,4 @@
-"""What the bench inside a page needs to know of ours: the arm's numbers, the mistakes, the motion of a person.
+"""Writes the data of the bench inside a page: the arm's numbers, the mistakes, the motion of a person.
 
 A mistake is done to a bench that only writes down what is done to it, so that it is described once, in
 greywhale_sim.faults. sim/web/exports.cpp takes the numbers and the calls.

@@ -1,4 +1,4 @@
-"""What the tuner inside a page needs to know of ours: motions and their weights, the arm and its variants, the search.
+"""Writes the data of the tuner inside a page: motions and their weights, the arm and its variants, the search.
 
 All of it is what `greywhale tune default --force` searches with, but for the motions: the page has straight lines
 between their rows, rounded to SCALE_RAD. host/native/web/exports.cpp takes the numbers.
@@ -136,7 +136,7 @@ def _rests(model: Model, rest_s: float, noise: int, beyond: float, cycle: swings
 
 
 def _rattle() -> dict[str, Any]:
-    """How swings.rattle filters a record with a row a tick, and what a swing of the duty is."""
+    """The filter of swings.rattle for a record with a row a tick, and the size of a swing of the duty."""
     return {
         "sections": swings.SECTIONS.ravel().tolist(),
         "blocks": [

@@ -138,7 +138,7 @@ def quick_person(bench: RunningBench) -> CalibratingPerson:
 
 @dataclass(frozen=True)
 class Calibrated:
-    """How a run of the verb ended, what it printed, and what it said on its way."""
+    """A run of the verb: its exit code, what it printed, and what it said on its way."""
 
     code: int
     printed: str

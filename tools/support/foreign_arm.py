@@ -146,7 +146,7 @@ class Run:
 
 @dataclass(frozen=True)
 class Commissioned:
-    """How an arm followed unseen motions before and after, what was tried in between, and its wall time (s)."""
+    """An arm's following of unseen motions before and after, the sets tried in between, and its wall time (s)."""
 
     before: Run
     after: Run

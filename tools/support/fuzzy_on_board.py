@@ -78,7 +78,7 @@ class FuzzyOnBoard:
         return Refusal(self._board.peek(24)[0]), cycles
 
     def set_state(self, integral: int, previous: int | None) -> None:
-        """What step() remembers: the integral in 2^-31 mV and the error of all periods before, None at the start."""
+        """Set step()'s memory: the integral in 2^-31 mV and the error of all periods before, None at the start."""
         until_change = self._ce_ticks if previous is None else 0
         errors = [previous or 0] * MOST_CE_TICKS
         self._board.poke(STATE_AT, STATE.pack(integral >> 16, integral & 0xFFFF, until_change, 0, *errors))

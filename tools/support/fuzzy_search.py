@@ -72,7 +72,7 @@ class Random:
         )
 
     def near(self, point: Point) -> Point:
-        """The same with one or two things changed."""
+        """A neighbour, with one or two things changed."""
         other = self.point()
         kind = self.random.integers(0, 5)
         if kind < 2:

@@ -78,7 +78,7 @@ def become(bench: Bench, parameters: ArmParameters) -> None:
 
 
 def grown_friction(arm: ArmParameters, factor: float) -> ArmParameters:
-    """The same arm with so many times the dry friction at every joint."""
+    """A copy of the arm with so many times the dry friction at every joint."""
     joints = []
     for joint in arm.joint:
         more = {name: factor * getattr(joint.friction, name) for name in ("coulomb", "breakaway")}

@@ -76,7 +76,7 @@ def record(
 
 
 def readings_of(angles: Floats, arm: ArmParameters, table: ParameterTable, seed: int) -> Floats:
-    """What the firmware makes of the true angles at every tick."""
+    """The firmware's readings of the true angles at every tick."""
     pots = Potentiometers(arm.follower_pots, seed + 1)
     shift = table["filter_shift"]
     before = np.vstack([angles[:1], angles[:-1]])

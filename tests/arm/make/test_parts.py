@@ -32,7 +32,7 @@ def test_the_data_sheets_line_is_kept(torque: float, current: float, speed: floa
 
 
 def test_the_winding_is_that_of_the_stall_current() -> None:
-    """Where back-EMF leaves room for it, the resistance is voltage by stall current."""
+    """If back-EMF leaves room for it, the resistance is voltage by stall current."""
     assert with_motor(SHEET).joint[0].motor.resistance == pytest.approx(12.0 / 2.0)
 
 

@@ -31,7 +31,7 @@ def need_names(patch: pytest.MonkeyPatch) -> None:
 
 @pytest.fixture(params=["without a name", "with a hidden name", "without locks"])
 def file_system(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> str:
-    """What a file system can do, from much to little."""
+    """File systems, from able to unable."""
     if request.param != "without a name":
         need_names(monkeypatch)
     if request.param == "without locks":

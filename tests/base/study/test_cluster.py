@@ -1,4 +1,4 @@
-"""Which schedulers a study would connect to, before it does. With real ones: tests/oracles/test_cluster.py."""
+"""The schedulers that a study would connect to, before it does. With real ones: tests/oracles/test_cluster.py."""
 
 from __future__ import annotations
 

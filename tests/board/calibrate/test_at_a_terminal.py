@@ -58,7 +58,7 @@ class Session:
         os.close(self._screen)
 
     def until(self, words: str) -> str:
-        """What is printed until these words, whatever lines it was broken into."""
+        """Everything that is printed until these words, whatever lines it was broken into."""
         while words not in " ".join(self._left.split()):
             piece = self._read()
             assert piece, f"{words!r} does not come; there is: {self._left}"
@@ -67,7 +67,7 @@ class Session:
         return before
 
     def end(self) -> str:
-        """What is printed until the end."""
+        """Everything that is printed until the end."""
         while piece := self._read():
             self._left += piece
         return " ".join(self._left.split())

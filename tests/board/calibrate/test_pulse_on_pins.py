@@ -25,7 +25,7 @@ FARTHEST_RAD = {1.0: 0.21, -1.0: 0.38}
 
 @dataclass
 class Seen:
-    """What the drivers' pins and the arm did."""
+    """Records of the drivers' pins and of the arm."""
 
     volts: np.ndarray = field(default_factory=lambda: np.zeros(4))  # most, of each motor
     on: list[int] = field(default_factory=list)  # cycles with the drivers enabled

@@ -19,7 +19,7 @@ SIDE = np.array([0.0, 0.0, 0.1])
 
 
 def seen(point: np.ndarray, angles: np.ndarray) -> np.ndarray:
-    """Where a point of the hand of the exported arm is: x ahead of the base, y to its left, z up."""
+    """The place of a point of the exported arm's hand: x ahead of the base, y to its left, z up."""
     joints = list(ElementTree.fromstring(urdf(default_arm())).iter("joint"))
     for joint, angle in reversed(list(zip(joints, angles, strict=True))):
         numbers = {one.tag: one.attrib for one in joint}
@@ -48,7 +48,7 @@ def test_positive_pitch_raises_the_hand(joint: int) -> None:
 
 
 def test_positive_roll_is_clockwise_from_the_elbow() -> None:
-    """Who looks ahead along x sees y on the left and z above: what is on the right goes down."""
+    """A person who looks ahead along x sees y on the left and z above: what is on the right goes down."""
     assert POSITIVE_WAYS[3] == "clockwise, seen from the elbow along the hand"
     way = along(3, SIDE)
     assert way[0][1] == pytest.approx(-0.1)

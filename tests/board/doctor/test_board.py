@@ -1,4 +1,4 @@
-"""What a board says about itself and its link, and its parameters against a file."""
+"""The board's words about itself and its link, and its parameters against a file."""
 
 from __future__ import annotations
 

@@ -49,7 +49,7 @@ class FakeBootloader:
 
     @property
     def left(self) -> bool:
-        """Whether the host has sent it back to the firmware."""
+        """True once the host has sent it back to the firmware."""
         return self.asked["leave"] > 0
 
     def content(self, count: int) -> bytes:
@@ -77,7 +77,7 @@ class FakeBootloader:
         return b"" if wrong == "answer" else answer
 
     def answer(self, data: bytes) -> tuple[bytes, bytes]:
-        """What to say to `data`, and what of it is kept until more comes."""
+        """The answer to `data`, and the part of it that is kept until more comes."""
         raise NotImplementedError
 
     def open(self, restart: bool, baud: int) -> Self:

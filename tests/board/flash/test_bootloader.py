@@ -1,4 +1,4 @@
-"""Who answers on a port is found out by asking, and whether it comes back from the watchdog from its code alone."""
+"""A bootloader on a port is found by asking, and from its code alone whether it comes back from the watchdog."""
 
 from __future__ import annotations
 

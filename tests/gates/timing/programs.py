@@ -45,7 +45,7 @@ class Assembled:
 
 
 class Compiled(Assembled):
-    """The same from C++, with `work(uint8_t)` somewhere in it."""
+    """A program from C++, with `work(uint8_t)` somewhere in it."""
 
     def __init__(self, folder: Path, source: str, chip: Chip) -> None:
         self.elf, self.chip = folder / "program.elf", chip

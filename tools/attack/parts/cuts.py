@@ -57,7 +57,7 @@ def sink(bench: BoardWithImage, random: np.random.Generator, seed: int) -> None:
 
 
 def judge(bench: BoardWithImage, old: int, new: int, changed: bool, saved: bool) -> str:
-    """What came of a cut; what must not be begins with "wrong". `changed`: the EEPROM is not as before the save."""
+    """The outcome of a cut; a forbidden one begins with "wrong". `changed`: the EEPROM is not as before the save."""
     running, fault = running_crc(bench), bench.status().fault
     told = fault is schema.Fault.PARAMS
     if running not in (old, new):
@@ -77,7 +77,7 @@ def is_saved(bench: BoardWithImage) -> bool:
 
 
 def cut_and_look(bench: BoardWithImage, old: int, new: int, seed: int, before: bytes) -> str:
-    """What came of a cut now. After it a set is stored again, which must end well."""
+    """The outcome of a cut now. After it a set is stored again, which must end well."""
     saved = is_saved(bench)
     cut(bench, seed)
     found = judge(bench, old, new, bench.board.eeprom() != before, saved)

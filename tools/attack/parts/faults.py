@@ -1,4 +1,4 @@
-"""How soon the motors are off after something has gone wrong, and how far the arm has gone by then."""
+"""Measures the time until the motors are off after a fault, and how far the arm has gone by then."""
 
 from __future__ import annotations
 

@@ -69,8 +69,8 @@ def launch(program: Program, arguments: Sequence[str]) -> tuple[bool, str]:
 
 @cache
 def fixed_addresses() -> tuple[str, ...]:
-    """What goes before a command so that a seed makes the same runs every time: libFuzzer takes addresses for numbers
-    to try. Nothing where the system does not allow it."""
+    """Words to put before a command so that a seed makes the same runs every time: libFuzzer takes addresses for
+    numbers to try. None where the system does not allow it."""
     command = ("setarch", "--addr-no-randomize")
     allowed = shutil.which(command[0]) and subprocess.run([*command, "true"], stderr=subprocess.DEVNULL).returncode == 0
     return command if allowed else ()

@@ -1,4 +1,4 @@
-"""What a lie costs that is slow, or two faults at once: how far the arm goes before anybody knows."""
+"""Measures how far the arm goes before anybody knows of a slow lie, or of two faults at once."""
 
 from __future__ import annotations
 

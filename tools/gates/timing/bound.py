@@ -49,7 +49,7 @@ class Flow:
             self.rows.append((terms, once, once))
 
     def runs(self, node: int) -> dict[int, float]:
-        """How often an instruction runs, as a sum of unknowns."""
+        """The number of runs of an instruction, as a sum of unknowns."""
         return dict.fromkeys(self._out[node], 1.0)
 
     def bound_loop(self, loop: loops.Loop, times: int) -> None:

@@ -1,4 +1,4 @@
-"""What each AVR instruction costs, after the data sheets' instruction set summary (internal memory only)."""
+"""The cycles of each AVR instruction, after the data sheets' instruction set summary (internal memory only)."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ COSTS = {name: cycles for cycles, names in ((1, ONE), (2, TWO), (3, THREE)) for 
 
 @dataclass(frozen=True)
 class Chip:
-    """What bounds depend on: return addresses of 2 bytes, or of 3 with a 22-bit program counter; where RAM ends."""
+    """Facts that bounds depend on: return addresses of 2 bytes, or 3 with a 22-bit program counter; the end of RAM."""
 
     name: str
     ram_end: int

@@ -1,4 +1,4 @@
-"""What the disassembly alone does not tell: how often loops run, and what excludes each other. From facts.toml."""
+"""Facts that the disassembly does not tell, from facts.toml: how often loops run, and what excludes each other."""
 
 from __future__ import annotations
 

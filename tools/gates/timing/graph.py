@@ -31,7 +31,7 @@ class Edge:
 
 @dataclass
 class Graph:
-    """What can run from an entry to the returns. Jumps into other functions are followed, calls are not.
+    """Instructions that can run from an entry to the returns. Jumps into other functions are followed, calls are not.
 
     `calls` has the callee's address for each calling instruction, `exits` the cycles of each returning instruction.
     """
@@ -64,12 +64,12 @@ def _ways(program: Program, instruction: Instruction, chip: Chip) -> list[Edge]:
 
 
 def enters(instruction: Instruction) -> bool:
-    """Whether it calls a function: `rcall .+0` only makes room on the stack, and at 0 is the reset."""
+    """True if it calls a function: `rcall .+0` only makes room on the stack, and at 0 is the reset."""
     return instruction.mnemonic in CALLS and instruction.target not in (0, instruction.next)
 
 
 def ends(instruction: Instruction) -> bool:
-    """Whether nothing of its function comes after it: it returns, or jumps to the reset at 0."""
+    """True if nothing of its function comes after it: it returns, or jumps to the reset at 0."""
     return instruction.mnemonic in RETURNS or (instruction.mnemonic in JUMPS and instruction.target == 0)
 
 

@@ -54,7 +54,7 @@ class Target:
         return f"{self.chip.name}, GCC {self.compiler}"
 
     def is_described(self) -> bool:
-        """Whether facts.toml is about the compiler that made the image: another one may make other loops."""
+        """True if facts.toml is about the compiler that made the image: another one may make other loops."""
         return self.compiler in facts.load().compilers
 
 

@@ -87,7 +87,7 @@ class Program:
         return names[place - 1] if place else "?"
 
     def entry(self, name: str) -> int:
-        """Where the function of this plain name begins."""
+        """The address at which the function of this plain name begins."""
         found = [address for symbol, address in self.symbols.items() if name in (symbol, plain_name(symbol))]
         if not found:
             raise ImageError(f"{name} is not in the image: was it renamed or inlined?")

@@ -1,4 +1,4 @@
-"""Where a switch goes that avr-gcc compiled into a table of addresses."""
+"""Finds the targets of a switch that avr-gcc compiled into a table of addresses."""
 
 from __future__ import annotations
 
