@@ -126,5 +126,5 @@ def test_where_descriptors_are_few_half_of_the_strangers_go_and_no_more_come_in(
 def test_the_same_is_told_once(caplog: pytest.LogCaptureFixture) -> None:
     door = Door()
     for sentence in 1000 * ["one.", "two."]:
-        door.tell(sentence)
+        door.log_once(sentence)
     assert caplog.messages == ["one.", "two."]

@@ -28,16 +28,16 @@ NOTHING = "none"
 class Fault:
     """A fault: `inject` does it to a bench at the potentiometer 0..7 or the joint 0..3 in question.
 
-    `verb` then says what `told` matches, a regular expression with <pot>, <other>, <first>, <second> (potentiometers)
-    and <joint>, <near>, <low>, <high> (joints; `near` is the one with which something is exchanged). What is `mended`
-    is found and put right by the verb itself; of all others the exit code is 1, unless it is but a `note`.
+    `verb` then finds it, with words that match the regular expression `words`. In it stand <pot>, <other>, <first>,
+    <second> for potentiometers and <joint>, <near>, <low>, <high> for joints; `near` is the one with which something is
+    exchanged. A `mended` fault is put right by the verb itself; for others its exit code is 1, or 0 if `noted`.
     """
 
     name: str
     on: Literal["pot", "motor", "arm"]
     says: str
     verb: Literal["calibrate", "doctor"]
-    told: str
+    words: str
     inject: Callable[[Bench, int], None]
     ends: Literal["refused", "mended", "noted"] = "refused"
     options: tuple[str, ...] = ()
@@ -49,7 +49,7 @@ class Fault:
         other = number - joint + near
         pots = {"pot": number, "other": other, "first": min(number, other), "second": max(number, other)}
         joints = {"joint": joint, "near": near, "low": min(joint, near), "high": max(joint, near)}
-        text = self.told
+        text = self.words
         for key, value in pots.items():
             text = text.replace(f"<{key}>", pot_name(value)[1:])
         for key, value in joints.items():

@@ -42,9 +42,9 @@ def why_no_body(inertia: Floats) -> str:
                 return f"its product of inertia {name} is {inertia[one, other]:g} kg m2, but its moments allow {most:g}"
         return "its products of inertia contradict each other: turned to its own axes, a moment would be below 0"
     if moments[2] > moments[0] + moments[1] + slack:
-        told = ", ".join(f"{moment:.4g}" for moment in moments)
+        listed = ", ".join(f"{moment:.4g}" for moment in moments)
         return (
-            f"its moments about its own axes are {told} kg m2, but none is more than the two others together "
+            f"its moments about its own axes are {listed} kg m2, but none is more than the two others together "
             "(triangle inequality)"
         )
     return ""
@@ -93,24 +93,24 @@ def _ways(joints: Sequence[TurningJoint]) -> list[float]:
 def doubts(joints: Sequence[TurningJoint], found: Sequence[JointSummary]) -> list[str]:
     """A sentence for each motor that is too strong, too weak, too fast or too slow to be meant so."""
     largest = max(one.gravity for one in found)
-    told = []
+    doubts = []
     for joint, one in zip(joints, found, strict=False):
         name = f"joint {cut(joint.name)}"
         if joint.friction >= joint.effort:
-            told.append(
+            doubts.append(
                 f"{name} has a friction of {joint.friction:g} N m and an effort of {joint.effort:g} N m: its motor "
                 "cannot turn it."
             )
         if largest > 0.0 and one.stall > FAR_TOO_STRONG * largest:
-            told.append(
+            doubts.append(
                 f"{name} has an effort of {joint.effort:g} N m, {one.stall / largest:.0f} times the largest torque of "
                 "gravity on this arm: write what its motor really gives, in N m."
             )
         elif one.stall < FAR_TOO_WEAK * one.gravity:
-            told.append(
+            doubts.append(
                 f"{name} has an effort of {joint.effort:g} N m against {one.gravity:.3g} N m of gravity: is the effort "
                 "in N m, and are the masses in kg?"
             )
         if not SLOWEST_RAD_S <= joint.velocity <= FASTEST_RAD_S:
-            told.append(f"{name} has a velocity of {joint.velocity:g} rad/s: is it in rad/s, and at the joint?")
-    return told
+            doubts.append(f"{name} has a velocity of {joint.velocity:g} rad/s: is it in rad/s, and at the joint?")
+    return doubts

@@ -61,23 +61,23 @@ def _joint(arm: ArmParameters, joint: int, gravity: float) -> JointSummary:
 def _warnings(arm: ArmParameters, joint: int, one: JointSummary) -> list[str]:
     name = f"joint {joint} ({JOINT_NAMES[joint]})"
     stops = arm.joint[joint].stops
-    told = []
+    warnings = []
     if one.share >= 1.0:
-        told.append(
+        warnings.append(
             f"{name} cannot lift the arm: stretched out it needs {one.gravity:.3g} N m, and its motor has "
             f"{one.stall:.3g} N m at {arm.drive.supply:g} V; take a stronger motor, more gear or a spring."
         )
     elif one.share > MUCH:
-        told.append(
+        warnings.append(
             f"{name} lifts the arm with {100 * one.share:.0f} % of its motor's torque; little is left to move it, and "
             "a motor that holds so much gets hot; half is a good limit, a third is better."
         )
     if joint in PITCHES and not one.holds:
-        told.append(f"{name} sinks when its motor is off: support the arm before you switch off.")
+        warnings.append(f"{name} sinks when its motor is off: support the arm before you switch off.")
     turn = stops.max - stops.min
     if turn > arm.follower_pots.joint[joint].track:
-        told.append(
+        warnings.append(
             f"{name} turns by {math.degrees(turn):.0f} degrees, more than the potentiometer's track of "
             f"{math.degrees(arm.follower_pots.joint[joint].track):.0f}: put stops in, or a gear before it."
         )
-    return told
+    return warnings

@@ -162,13 +162,13 @@ class _Reader:
     def _limits(self, limit: xml.Element | None, name: str) -> tuple[float, float]:
         """The lower and the upper one (rad). They are never exchanged: the axis may be what is wrong."""
         low, high = self._number(limit, "lower", name, 0.0), self._number(limit, "upper", name, 0.0)
-        told = f"joint {cut(name)} has its lower limit at {low:g} rad and its upper one at {high:g} rad"
+        limits = f"joint {cut(name)} has its lower limit at {low:g} rad and its upper one at {high:g} rad"
         if low > high:
-            raise self._bad(told, "exchange the two if that is meant, and look whether its axis points the right way")
+            raise self._bad(limits, "exchange the two if that is meant, and look whether its axis points the right way")
         if low == high:
-            raise self._bad(f"{told}, so it cannot turn", "give its limits, or make it fixed")
+            raise self._bad(f"{limits}, so it cannot turn", "give its limits, or make it fixed")
         if max(-low, high) > FULL_TURNS:
-            raise self._bad(f"{told}; limits are in rad, and these look like degrees", _CORRECT)
+            raise self._bad(f"{limits}; limits are in rad, and these look like degrees", _CORRECT)
         return low, high
 
     def _effort(self, limit: xml.Element | None, key: str, name: str, optional: bool) -> float:
@@ -202,8 +202,8 @@ class _Reader:
         frame[:3, 3] = self._vector(tag, "xyz", where, (0.0, 0.0, 0.0))
         roll, pitch, yaw = self._vector(tag, "rpy", where, (0.0, 0.0, 0.0))
         if max(abs(roll), abs(pitch), abs(yaw)) > FULL_TURNS:
-            told = f"rpy of {cut(where)} is {roll:g} {pitch:g} {yaw:g}"
-            raise self._bad(f"{told}; angles are in rad, and these look like degrees", _CORRECT)
+            angles = f"rpy of {cut(where)} is {roll:g} {pitch:g} {yaw:g}"
+            raise self._bad(f"{angles}; angles are in rad, and these look like degrees", _CORRECT)
         frame[:3, :3] = _turn(2, yaw) @ _turn(1, pitch) @ _turn(0, roll)
         return frame
 

@@ -56,28 +56,28 @@ def with_guessed_motors(joints: Sequence[TurningJoint], arm: ArmParameters) -> l
 
 def remarks_on(number: int, given: TurningJoint, used: TurningJoint, sign: float, offset: float) -> list[str]:
     """Remarks on a joint: values that were guessed or left out, given the URDF's own and those used instead."""
-    name, told = f"joint {cut(given.name)}", []
+    name, remarks = f"joint {cut(given.name)}", []
     if not given.effort:
-        told.append(
+        remarks.append(
             f"{name} says no effort; {used.effort:.3g} N m is a guess, which carries the arm {CARRIES:g} times: put in "
             "what its motor gives"
         )
     if not given.velocity:
-        told.append(f"{name} says no velocity; {GUESSED_RAD_S:g} rad/s is a guess")
+        remarks.append(f"{name} says no velocity; {GUESSED_RAD_S:g} rad/s is a guess")
     ends = _ends(given, sign, offset)
     if given.endless:
-        told.append(f"{name} turns for ever; its stops are a turn to either side")
+        remarks.append(f"{name} turns for ever; its stops are a turn to either side")
     elif max(-ends[0], ends[1]) > math.tau:
         turns = " to ".join(f"{math.degrees(end):.0f}" for end in ends)
-        told.append(f"the stops of {name}, {turns} degrees here, were cut to a turn to either side")
+        remarks.append(f"the stops of {name}, {turns} degrees here, were cut to a turn to either side")
     said = used.effort / used.velocity
     if given.damping > 0.0 and abs(given.damping - said) > SAME_DAMPING * said:
-        told.append(
+        remarks.append(
             f"the damping of {name}, {given.damping:.3g} N m s, was left out; effort by velocity, {said:.3g} N m s, "
             "stands for it"
         )
-    told.append(f"the inertia of the {JOINT_NAMES[number]}'s motor is a guess, {GUESSED_INERTIA[number]:g} kg m2")
-    return told
+    remarks.append(f"the inertia of the {JOINT_NAMES[number]}'s motor is a guess, {GUESSED_INERTIA[number]:g} kg m2")
+    return remarks
 
 
 def _ends(joint: TurningJoint, sign: float, offset: float) -> tuple[float, float]:

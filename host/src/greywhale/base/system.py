@@ -314,8 +314,8 @@ def open_errno(error: OSError) -> int | None:
     """The errno of a port that pyserial could not open. Windows says it in words: access denied if it is in use."""
     if sys.platform != "win32":
         return error.errno
-    told = re.search(r"Error\((\d+),", str(error))
-    number = None if told is None else int(told[1])
+    code = re.search(r"Error\((\d+),", str(error))
+    number = None if code is None else int(code[1])
     return errno.EBUSY if number == errno.EACCES else number
 
 

@@ -106,7 +106,7 @@ class Leading:
         self._limit = tracking_limit or float("inf")
         self._first = begun.next
         self._origin = np.array(begun.reference) * ANGLE_LSB
-        self._told = np.zeros(JOINTS, dtype=np.int64)  # steps from the origin, of all points made
+        self._last_point = np.zeros(JOINTS, dtype=np.int64)  # steps from the origin, of all points made
         self._points: list[tuple[int, int, int, int]] = []
         self._sent = self._taken = 0  # points; self._points[self._taken:] are not known to have arrived
         self._waiting = self._heard = 0  # points that the board had to play, and the tick at which it said so
@@ -205,8 +205,8 @@ class Leading:
                     "times its length; check that every joint moves freely, or lower its range."
                 )
             target = np.round((self._plan.at(self._place) - self._origin) / STEP_LSB).astype(np.int64)
-            step = np.clip(target - self._told, -LONGEST_STEP, LONGEST_STEP)
-            self._told += step
+            step = np.clip(target - self._last_point, -LONGEST_STEP, LONGEST_STEP)
+            self._last_point += step
             self._points.append((int(step[0]), int(step[1]), int(step[2]), int(step[3])))
-            self._made_all = self._place >= end and bool((target == self._told).all())
+            self._made_all = self._place >= end and bool((target == self._last_point).all())
         return len(self._points) >= count

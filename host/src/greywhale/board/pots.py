@@ -45,13 +45,13 @@ class PotReadings:
 
     def complaints(self, pots: Iterable[int] = range(len(POTS))) -> list[str]:
         """A sentence for each of these pots at a rail: which, what it reads, what to do."""
-        told = []
+        sentences = []
         for pot in pots:
             if (fault := self.at_rail(pot)) is not schema.Fault.NONE:
                 reads = f"{self.counts[:, pot].min()}..{self.counts[:, pot].max()} of {FULL_SCALE}"
                 remedy = fault.remedy.removesuffix(", then clear the fault.")
-                told.append(f"{pot_name(pot)} reads {reads}, at a rail ({fault.key}): {lower_first(remedy)}.")
-        return told
+                sentences.append(f"{pot_name(pot)} reads {reads}, at a rail ({fault.key}): {lower_first(remedy)}.")
+        return sentences
 
 
 def read_pots(device: Device, table: ParameterTable) -> PotReadings:

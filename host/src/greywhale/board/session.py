@@ -54,7 +54,7 @@ class Session:
         self._users = 0
         self._send_stop: Callable[[], None] | None = None
         self._send_clutch: Callable[[str], None] | None = None
-        self._told = False
+        self._ended = False  # by an exception or an interrupt, once
         self._unreachable = ""  # why `greywhale stop` does not reach this session
         self._interrupts = threading.current_thread() is threading.main_thread()
         self._interrupted = False
@@ -106,8 +106,8 @@ class Session:
 
     def check(self) -> None:
         """End a session that was asked to stop and that no Ctrl-C reached."""
-        if self.asked and not self._told:
-            self._told = True
+        if self.asked and not self._ended:
+            self._ended = True
             raise StopAsked
 
     def refuse_motion(self) -> None:
@@ -118,7 +118,7 @@ class Session:
             self._rely_on_ctrl_c()
 
     def confirm(self, outcome: dict[str, Any]) -> None:
-        """The board confirmed a stop, or did not: what those who asked are told. The first word counts."""
+        """Answer those who asked for a stop with its outcome: confirmed by the board, or not. The first one counts."""
         if self.waiting:
             self._outcome = outcome
             self._confirmed.set()
@@ -215,8 +215,8 @@ class Session:
         else:
             with contextlib.suppress(UserError):  # the main thread finds out by itself
                 send()
-        if self._interrupts and callable(signal.getsignal(signal.SIGINT)) and not self._told:
-            self._told = self._interrupted = True
+        if self._interrupts and callable(signal.getsignal(signal.SIGINT)) and not self._ended:
+            self._ended = self._interrupted = True
             system.signal_main_thread(signal.SIGINT)
 
     def _wake_main_thread(self) -> float | None:
@@ -255,10 +255,10 @@ def ask_to_stop(port: str, wait_for_end: bool = False, heard_s: float = HEARD_S)
             answer = b""
     if not answer:
         raise UserError(f"{port}: the session ended before it confirmed the stop; run `greywhale stop` again.")
-    told: dict[str, Any] = json.loads(answer)
-    if "problem" in told:
-        raise UserError(told["problem"])
-    return told
+    outcome: dict[str, Any] = json.loads(answer)
+    if "problem" in outcome:
+        raise UserError(outcome["problem"])
+    return outcome
 
 
 def ask_for_clutch(port: str, action: str, heard_s: float = HEARD_S) -> int | None:

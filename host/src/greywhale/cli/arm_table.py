@@ -45,12 +45,12 @@ def table(arm: ArmParameters, found: Summary) -> list[str]:
 
 def notes(found: Summary, left_out: tuple[str, ...] = ()) -> list[str]:
     """Warnings, what to do before it moves, and which answers were left out."""
-    told = [f"Warning: {warning}" for warning in found.warnings]
+    lines = [f"Warning: {warning}" for warning in found.warnings]
     if before := advice(found):
-        told.append(f"Before it moves: {before}")
+        lines.append(f"Before it moves: {before}")
     if left_out:
-        told.append(f"Note: the file leaves out {len(left_out)} answers, taken as usual: {', '.join(left_out)}.")
-    return ["", *told] if told else []
+        lines.append(f"Note: the file leaves out {len(left_out)} answers, taken as usual: {', '.join(left_out)}.")
+    return ["", *lines] if lines else []
 
 
 def advice(found: Summary) -> str:

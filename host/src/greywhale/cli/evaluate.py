@@ -63,7 +63,7 @@ def command(logs: tuple[Path, ...], picture: Path | None, overwrite: bool, as_js
     for path in logs:
         log = read_log(path)
         evaluations.append(evaluate(log))
-        warnings.append([*log.remarks, *(f"{log.name}: {told}." for told in tell_powerless(log))])
+        warnings.append([*log.remarks, *(f"{log.name}: {sentence}." for sentence in tell_powerless(log))])
         read.append(log if picture is not None else log.without_samples())
     results: list[LogFacts] = [
         {

@@ -152,7 +152,7 @@ def _text(device: Device, hello: schema.HelloReply, status: schema.StatusReply, 
         ),
         ("rules", f"none fired {counted(status.no_rule, 'time')}" if status.no_rule else "one always fired"),
         ("saves", f"{status.saves:,}; the EEPROM is made for {EEPROM_WRITES:,}"),
-        *(("pots", told) for told in _tell_pots(pots)),
+        *(("pots", line) for line in _tell_pots(pots)),
     ]
     return "\n".join(f"{name:<{BESIDE}}{value}" for name, value in rows)
 
@@ -167,5 +167,5 @@ def _tell_pots(pots: PotReadings | None) -> list[str]:
     if pots is None:
         return ["not looked at: the motors are on"]
     absent = [pot_name(number) for number in range(len(POTS)) if number not in pots.there]
-    told = pots.complaints() or ["none is at a rail; wires that touch are found by `greywhale doctor`"]
-    return [*told, f"not in use: {', '.join(absent)}"] if absent else told
+    complaints = pots.complaints() or ["none is at a rail; wires that touch are found by `greywhale doctor`"]
+    return [*complaints, f"not in use: {', '.join(absent)}"] if absent else complaints

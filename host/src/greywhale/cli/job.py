@@ -16,8 +16,8 @@ import sys
 from greywhale.cli import entry, output
 from greywhale.protocol.lent_line import lend
 
-# A step's share is told again when it has grown by so much.
-TOLD_SHARE = 0.002
+# A step is reported again when this share more of it is done, so a step has 500 reports at most.
+LEAST_STEP_SHARE = 0.002
 
 
 class Reporter:
@@ -25,13 +25,13 @@ class Reporter:
 
     def __init__(self, descriptor: int) -> None:
         self._file = os.fdopen(descriptor, "w", encoding="utf-8", buffering=1)
-        self._told: tuple[str, float, str] = ("", -1.0, "")
+        self._last_report: tuple[str, float, str] = ("", -1.0, "")
 
     def __call__(self, what: str, fraction: float, note: str = "") -> None:
-        before = self._told
-        if (what, note) == (before[0], before[2]) and abs(fraction - before[1]) < TOLD_SHARE:
+        before = self._last_report
+        if (what, note) == (before[0], before[2]) and abs(fraction - before[1]) < LEAST_STEP_SHARE:
             return
-        self._told = (what, fraction, note)
+        self._last_report = (what, fraction, note)
         self._tell(progress={"text": what, "done": fraction, "total": 1.0, "note": note})
 
     def counts(self, left: int) -> None:

@@ -82,16 +82,16 @@ def watch(device: Device, table: ParameterTable, seconds: float | None = None) -
 
 def looks(device: Device, table: ParameterTable) -> Iterator[Look]:
     """Yield a look at the board's newest sample, again and again, without end."""
-    fault, told, lost = schema.Fault.NONE, "", 0
+    fault, fault_words, lost = schema.Fault.NONE, "", 0
     for one in stream(device, EVERY):
         lost += one.lost
         if one.sample.fault is not fault:
             fault = one.sample.fault
             status = device.status()
-            told = "" if status.fault is schema.Fault.NONE else fault_text(status)
+            fault_words = "" if status.fault is schema.Fault.NONE else fault_text(status)
         counts = np.clip(np.rint(counts_of([one.sample], table)), 0, FULL_SCALE).astype(np.int64)
         complaints = tuple(PotReadings(counts, table["rail_counts"], pots_there(table)).complaints())
-        yield Look(device.port, one.elapsed, one.sample, counts[0], complaints, told, lost, table.joints_in_use)
+        yield Look(device.port, one.elapsed, one.sample, counts[0], complaints, fault_words, lost, table.joints_in_use)
 
 
 def as_table(look: Look) -> str:
@@ -112,11 +112,11 @@ def as_table(look: Look) -> str:
             f"joint {joint} {leader:>+9.3f}{look.counts[joint]:>8}{follower:>+9.3f}{look.counts[JOINTS + joint]:>8}"
             f"{leader - follower:>+10.3f}{look.voltage[joint]:>+10.2f}"
         )
-    told = [f"Fault: {look.fault}" if look.fault else "No fault.", *look.complaints[:MOST_COMPLAINTS]]
+    sentences = [f"Fault: {look.fault}" if look.fault else "No fault.", *look.complaints[:MOST_COMPLAINTS]]
     if len(look.complaints) > MOST_COMPLAINTS:
-        told.append(f"{len(look.complaints) - MOST_COMPLAINTS} more potentiometers are at a rail.")
-    told.append("Ctrl-C ends this.")
-    return "\n".join([*lines, "", *(line for sentence in told for line in textwrap.wrap(sentence, WIDTH))])
+        sentences.append(f"{len(look.complaints) - MOST_COMPLAINTS} more potentiometers are at a rail.")
+    sentences.append("Ctrl-C ends this.")
+    return "\n".join([*lines, "", *(line for sentence in sentences for line in textwrap.wrap(sentence, WIDTH))])
 
 
 def as_line(look: Look) -> str:

@@ -149,12 +149,12 @@ class Server(uvicorn.Server):
         except OSError as error:
             if error.errno not in _NO_DESCRIPTORS:
                 raise
-            self._door.tell("the system has no descriptors left for connections; new pages wait for some.")
+            self._door.log_once("the system has no descriptors left for connections; new pages wait for some.")
             if not self._door.keep_fewer():
                 self._spend_reserve(listener)
             return
         if is_foreign(connection):
-            self._door.tell("another user of this machine tried to connect to the dashboard, and was refused.")
+            self._door.log_once("another user of this machine tried to connect to the dashboard, and was refused.")
             connection.close()
             return
         connection.setblocking(False)

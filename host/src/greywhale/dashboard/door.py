@@ -64,7 +64,7 @@ class Door:
         self._most_strangers, self._most_known, self._clock = most_strangers, most_known, clock
         self._strangers: dict[Address, _Stranger] = {}  # the oldest first
         self._known: dict[Address, Visitor] = {}
-        self._told: set[str] = set()
+        self._logged: set[str] = set()
 
     def make_room(self) -> bool:
         """Return True if one more may enter; where strangers are too many, close one of them for it.
@@ -75,7 +75,7 @@ class Door:
         self._forget_gone()
         if len(self._strangers) < self._most_strangers:
             return True
-        self.tell(f"more than {self._most_strangers} connections show no token; the oldest of them are closed.")
+        self.log_once(f"more than {self._most_strangers} connections show no token; the oldest of them are closed.")
         now_s = self._clock()
         strangers = self._strangers.values()
         waiting_for_nothing = [
@@ -132,10 +132,10 @@ class Door:
         for stranger in self._strangers.values():
             stranger.visitor.close()
 
-    def tell(self, sentence: str) -> None:
+    def log_once(self, sentence: str) -> None:
         """Write a line into the log, once: a client that is refused may come again a thousand times a second."""
-        if sentence not in self._told:
-            self._told.add(sentence)
+        if sentence not in self._logged:
+            self._logged.add(sentence)
             logger.warning(sentence)
 
     def _forget_gone(self) -> None:

@@ -34,12 +34,12 @@ class Folder:
     def inside(self, name: str) -> Path:
         """The whole path of a name; one that leads out of the folder is refused, also through a link."""
         whole = self.path / name if name and name.isprintable() else None
-        told = cut(name if name.isprintable() else repr(name))
+        shown = cut(name if name.isprintable() else repr(name))
         if whole is not None and _leads_in_circle(whole):
             raise BadUsage(f"{cut(name)}: its links lead in a circle; name another file.")
         if whole is None or not whole.resolve().is_relative_to(self.path):
             raise BadUsage(
-                f"{told or 'an empty name'}: it is not in {self.path}; name a file there, or start the dashboard "
+                f"{shown or 'an empty name'}: it is not in {self.path}; name a file there, or start the dashboard "
                 "with another --folder."
             )
         return whole

@@ -114,16 +114,16 @@ class Job:
                 client = Client(Outbox(self._wake, MOST_SAMPLES), self.facts["verb"], self.facts["id"], self._interrupt)
                 self._line = LentEnd(relay, own, client, wish)  # from now on a stop, or the page's end, is heard
                 failed.callback(self._line.close)
-            progress, told = os.pipe()
-            handed.callback(os.close, told)
+            progress, reports = os.pipe()
+            handed.callback(os.close, reports)
             failed.callback(os.close, progress)
             self._process = processes.start(
-                [*program, str(told), line, port, *words],
+                [*program, str(reports), line, port, *words],
                 cwd=folder,
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
                 stderr=subprocess.PIPE,
-                pass_fds=[*descriptors, told],
+                pass_fds=[*descriptors, reports],
                 start_new_session=True,  # Ctrl-C in the server's terminal ends it through the server
             )
             failed.pop_all()

@@ -143,11 +143,11 @@ def _endpoint(answer: Callable[[dict[str, Any]], object]) -> Callable[[Request],
 
 async def _object(request: Request) -> dict[str, Any]:
     try:
-        told = await request.json()
+        content = await request.json()
         # What JSON itself does not know: NaN, infinite numbers, half of a letter.
-        await asyncio.to_thread(lambda: json.dumps(told, allow_nan=False, ensure_ascii=False).encode())
+        await asyncio.to_thread(lambda: json.dumps(content, allow_nan=False, ensure_ascii=False).encode())
     except (ValueError, RecursionError):
-        told = None
-    if not isinstance(told, dict):
+        content = None
+    if not isinstance(content, dict):
         raise BadUsage("the body of the request must be a JSON object, of text and finite numbers.")
-    return told
+    return content

@@ -134,8 +134,8 @@ async def serve_host(socket: WebSocket, jobs: Jobs) -> None:
 
 def _kind(text: str) -> str:
     try:
-        told = json.loads(text)
+        message = json.loads(text)
     except (ValueError, RecursionError):
         return ""
-    kind = told.get("kind") if isinstance(told, dict) else None
+    kind = message.get("kind") if isinstance(message, dict) else None
     return kind if isinstance(kind, str) else ""

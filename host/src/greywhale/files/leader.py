@@ -44,14 +44,14 @@ def load_leader(path: str | Path) -> Trajectory:
         file.require_rows(len(time_s), 2)
         facts = facts_of(file.comments) if file.columns is LOG_COLUMNS else {}
         refuse_other_times(file.name, facts, time_s)
-        told = () if "every_ticks" in facts else doubt_speed(time_s, angles)
+        remarks = () if "every_ticks" in facts else doubt_speed(time_s, angles)
         if file.columns is LOG_COLUMNS:
-            told += judge_condition(file.name, facts, crc, time_s).remarks
+            remarks += judge_condition(file.name, facts, crc, time_s).remarks
     wrong = _find_wrong(time_s, angles)
     if wrong is not None:
         row, column, problem = wrong
         raise UserError(f"{file.name}, line {np.concatenate(lines)[row]}, column {column}: {problem}.")
-    return Trajectory(time_s - time_s[0], angles, tuple(f"{file.name}: {remark}" for remark in told))
+    return Trajectory(time_s - time_s[0], angles, tuple(f"{file.name}: {remark}" for remark in remarks))
 
 
 def _find_wrong(time_s: Floats, angles: Floats) -> tuple[int, str, str] | None:

@@ -85,7 +85,7 @@ class Optimiser(Closing):
     # The interface for a caller.
 
     def ask(self) -> Floats:
-        """The candidates to evaluate next; the same ones until they have been told."""
+        """The candidates to evaluate next; again these until `tell` has their costs."""
         if self._pending is None:
             if self.done:
                 raise ValueError(f"the budget of {self.budget} evaluations is spent")
@@ -98,17 +98,17 @@ class Optimiser(Closing):
         """The costs of the candidates that `ask` gave, in their order."""
         if self._pending is None:
             raise ValueError("tell() without ask(): there are no candidates these costs could belong to")
-        told = np.array(costs, dtype=float)
-        if told.shape != (len(self._pending),):
+        values = np.array(costs, dtype=float)
+        if values.shape != (len(self._pending),):
             raise ValueError(
-                f"{len(self._pending)} candidates need one cost each, but the costs' shape is {told.shape}"
+                f"{len(self._pending)} candidates need one cost each, but the costs' shape is {values.shape}"
             )
-        told[~np.isfinite(told)] = np.inf
+        values[~np.isfinite(values)] = np.inf
         candidates, self._pending = self._pending, None
         self._evaluations += len(candidates)
-        self._remember(candidates, told)
+        self._remember(candidates, values)
         if not self._cut_short:
-            self._learn(candidates, told)
+            self._learn(candidates, values)
         if self.done:
             self.close()
 

@@ -68,8 +68,8 @@ def plot_sets(before: Controllers, after: Controllers, joints: Joints = ALL) -> 
     height = 7.0 - 1.46 * (len(JOINTS) - count)
     figure, grid = plt.subplots(count, 2, figsize=(WIDE, height), sharex=True, sharey=True, squeeze=False)
     figure.subplots_adjust(**leave(figure, 0.5, 0.12, 0.66, 0.5, wspace=0.07, hspace=0.36))
-    told = "before and after tuning" if some else _UNCHANGED
-    headline(figure, f"Input membership functions {told}")
+    which = "before and after tuning" if some else _UNCHANGED
+    headline(figure, f"Input membership functions {which}")
     for joint, row in zip(joints, grid, strict=True):
         for axes, (name, symbol), (old, new) in zip(row, _INPUTS.items(), corners[joint], strict=True):
             changed = old != new

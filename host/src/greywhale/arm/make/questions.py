@@ -59,8 +59,8 @@ class Question:
         try:
             value = units.read_number(str(given), self.unit)
         except ValueError as error:
-            told = f"; or say one of: {', '.join(self.choices)}" if self.choices else ""
-            raise ValueError(f"{error}{told}") from None
+            choices = f"; or say one of: {', '.join(self.choices)}" if self.choices else ""
+            raise ValueError(f"{error}{choices}") from None
         if not self.low <= value <= self.high:
             span = f"{units.shown(self.low, units.PLAIN)} to {units.shown(self.high, self.unit)}"
             raise ValueError(f"it must be {span}")

@@ -51,8 +51,8 @@ class Results(Closing):
 
 def _identity(tasks: Sequence[Task], about: Mapping[str, Any]) -> dict[str, Any]:
     """The identity of a study: its user's words, the versions, and every task with its seed and arguments."""
-    told = json.dumps([task.identity for task in tasks], separators=(",", ":"), allow_nan=False)
-    digest = hashlib.sha256(told.encode()).hexdigest()[:16]
+    identities = json.dumps([task.identity for task in tasks], separators=(",", ":"), allow_nan=False)
+    digest = hashlib.sha256(identities.encode()).hexdigest()[:16]
     own = {"versions": versions(), "number of tasks": len(tasks), "list of tasks": digest}
     return {**encode(about), **own}
 

@@ -71,8 +71,8 @@ def do(packed: bytes) -> str:
         raise
     except (Exception, SystemExit) as error:
         # Not the error itself: a process that cannot unpickle an exception loses all its workers.
-        told = "".join(traceback.format_exception(error))
-        raise TaskFailed(f"task {key!r}: {type(error).__name__}: {error}\n{told}") from None
+        trace = "".join(traceback.format_exception(error))
+        raise TaskFailed(f"task {key!r}: {type(error).__name__}: {error}\n{trace}") from None
 
 
 def _process() -> str:

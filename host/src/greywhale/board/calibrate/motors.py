@@ -114,16 +114,16 @@ def remarks(motors: Sequence[Motor], supply_v: float) -> tuple[str, ...]:
             f"Every motor needed {min(one.volts for one in motors):.1f} V or more to move its joint: check the motors' "
             f"supply; the board counts on {supply_v:g} V (supply_mv).",
         )
-    told = []
+    remarks = []
     for motor in motors:
         usual = float(np.median([other.answer for other in motors if other is not motor] or [0.0]))
         if motor.answer < WEAK_SHARE * usual:
-            told.append(
+            remarks.append(
                 f"The motor of joint {motor.joint} moved it by {1e3 * motor.answer:.0f} mrad a volt, the others theirs "
                 f"by {1e3 * usual:.0f}: it is weak, or its joint turns hard; check its wires, its driver's current "
                 "limit, and that the joint turns freely by hand."
             )
-    return tuple(told)
+    return tuple(remarks)
 
 
 def pulse_table(table: ParameterTable, joint: int, volts: float) -> ParameterTable:

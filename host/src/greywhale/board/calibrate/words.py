@@ -39,13 +39,13 @@ def sweep_asked(pot: int, number: int, of: int) -> str:
 
 def poses_asked(first: Floats, second: Floats | None, joints: Joints) -> Sequence[tuple[Floats, str]]:
     """The four poses: angles (4,) where they count, and what is asked."""
-    told, unknown = _told(first, joints), np.zeros(JOINTS)
-    known = None if second is None else f"now hold both arms in this pose: {_told(second, joints)}."
+    first_pose, unknown = _in_words(first, joints), np.zeros(JOINTS)
+    known = None if second is None else f"now hold both arms in this pose: {_in_words(second, joints)}."
     other = "now hold both arms in one and the same other pose, every joint at least 20 degrees away."
     return (
-        (first, f"Pose 1 of 4: hold both arms in this pose: {told}."),
+        (first, f"Pose 1 of 4: hold both arms in this pose: {first_pose}."),
         (unknown if second is None else second, f"Pose 2 of 4: {known or other}"),
-        (first, f"Pose 3 of 4: once more the first pose: {told}."),
+        (first, f"Pose 3 of 4: once more the first pose: {first_pose}."),
         (unknown, "Pose 4 of 4: hold both arms in one and the same third pose, away from the other two."),
     )
 
@@ -64,7 +64,7 @@ def motor_named(joint: int, joints: Joints) -> str:
     return f"Motor {joints.index(joint) + 1} of {len(joints)}, joint {joint}, {JOINT_NAMES[joint]}"
 
 
-def _told(angles: Floats, joints: Joints) -> str:
+def _in_words(angles: Floats, joints: Joints) -> str:
     if not angles[list(joints)].any():
         return "every joint at 0 (stretched out, level)"
     return ", ".join(f"joint {joint} at {np.degrees(angles[joint]):.0f} degrees" for joint in joints)

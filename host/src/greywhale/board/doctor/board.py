@@ -82,13 +82,15 @@ def _wear(saves: int) -> Finding:
         return Finding("EEPROM", Verdict.GOOD, "No set is stored: nothing is worn.")
     share = 100.0 * saves / EEPROM_WRITES
     much = f"{share:.1f} %" if share >= 0.1 else "less than 0.1 %"
-    told = f"{saves:,} save{'' if saves == 1 else 's'}: {much} of the {EEPROM_WRITES:,} writes that a cell is made for."
+    usage = (
+        f"{saves:,} save{'' if saves == 1 else 's'}: {much} of the {EEPROM_WRITES:,} writes that a cell is made for."
+    )
     if saves < MANY_SAVES:
-        return Finding("EEPROM", Verdict.GOOD, told)
+        return Finding("EEPROM", Verdict.GOOD, usage)
     return Finding(
         "EEPROM",
         Verdict.NOTE,
-        f"{told} The count begins anew after 65,535.",
+        f"{usage} The count begins anew after 65,535.",
         "Save more seldom (a set that only runs is not stored: `greywhale commission` tries them so), or plan another "
         "board.",
     )
@@ -124,8 +126,8 @@ def _joints(table: ParameterTable) -> list[Finding]:
         remedy = "Tell the board which joints there are: `greywhale calibrate --joints 0,1`."
         return [Finding("joints", Verdict.BAD, "No joint is in use: every follower's scale is 0.", remedy)]
     idle = unused(table.joints_in_use)
-    told = f"{upper_first(named(idle))} {'is' if len(idle) == 1 else 'are'} not in use (follower's scale 0)."
-    return [Finding("joints", Verdict.GOOD, told)]
+    text = f"{upper_first(named(idle))} {'is' if len(idle) == 1 else 'are'} not in use (follower's scale 0)."
+    return [Finding("joints", Verdict.GOOD, text)]
 
 
 def _against(table: ParameterTable, wanted: Mapping[str, int], path: Path) -> Finding:

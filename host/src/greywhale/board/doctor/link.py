@@ -59,7 +59,7 @@ def exchange(device: Device, table: ParameterTable, seconds: float, report: Call
 
 def examine_traffic(traffic: Traffic, repeat_s: float) -> Finding:
     """One finding; an answer that took longer than `repeat_s` was asked for again."""
-    told = f"{traffic.samples:,} samples and {traffic.requests:,} answers"
+    checked = f"{traffic.samples:,} samples and {traffic.requests:,} answers"
     problems = [
         (traffic.wrong, "answers were wrong"),
         (traffic.lost, "samples were lost"),
@@ -69,13 +69,13 @@ def examine_traffic(traffic: Traffic, repeat_s: float) -> Finding:
     found = [f"{count} {what}" for count, what in problems if count]
     late = f"an answer took {traffic.slowest_s:.2f} s" if traffic.slowest_s > repeat_s else ""
     if not found and not late:
-        return Finding("link", Verdict.GOOD, f"{told} at 1 Mbaud, none lost, none damaged.")
+        return Finding("link", Verdict.GOOD, f"{checked} at 1 Mbaud, none lost, none damaged.")
     if not found:  # nothing is lost by that: requests are repeated
-        return Finding("link", Verdict.NOTE, f"{told}, none lost or damaged, but {late}.", "Close other programs.")
+        return Finding("link", Verdict.NOTE, f"{checked}, none lost or damaged, but {late}.", "Close other programs.")
     found += [late] if late else []
     return Finding(
         "link",
         Verdict.BAD,
-        f"Of {told}: {', '.join(found)}.",
+        f"Of {checked}: {', '.join(found)}.",
         "Use a short USB cable without a hub, keep motor wires away from it, and close other programs.",
     )

@@ -60,7 +60,7 @@ def look(counts: Floats) -> Quiet:
 
 def examine_pots(counts: Floats, rails: list[str]) -> list[Finding]:
     """Findings about counts (rows, 8), leader 0..3, follower 0..3; `rails` are the sentences about pots at a rail."""
-    findings = [Finding("rails", Verdict.BAD, upper_first(told)) for told in rails]
+    findings = [Finding("rails", Verdict.BAD, upper_first(sentence)) for sentence in rails]
     if not rails:
         findings.append(Finding("rails", Verdict.GOOD, "No potentiometer reads at a rail."))
     quiet = [look(counts[:, pot]) for pot in range(len(POTS))]
@@ -90,11 +90,11 @@ def _alike(counts: Floats) -> Finding:
     ]
     if not pairs:
         return Finding("inputs", Verdict.GOOD, "Each reads something of its own.")
-    told = "; ".join(f"{pot_name(one)} and {pot_name(other)}" for one, other in pairs)
+    listed = "; ".join(f"{pot_name(one)} and {pot_name(other)}" for one, other in pairs)
     return Finding(
         "inputs",
         Verdict.BAD,
-        f"These read alike: {told}.",
+        f"These read alike: {listed}.",
         "One of them is not connected (its input keeps the other's charge), or both wires are on one potentiometer: "
         "check the wipers' wires, and put 100 kOhm from each input to ground.",
     )
@@ -104,11 +104,11 @@ def _jumps(quiet: list[Quiet]) -> Finding:
     jumping = [pot for pot, one in enumerate(quiet) if one.jumps]
     if not jumping:
         return Finding("contacts", Verdict.GOOD, "Nothing jumped.")
-    told = ", ".join(f"{pot_name(pot)} {quiet[pot].jumps} times" for pot in jumping)
+    listed = ", ".join(f"{pot_name(pot)} {quiet[pot].jumps} times" for pot in jumping)
     return Finding(
         "contacts",
         Verdict.BAD,
-        f"Readings jumped: {told}.",
+        f"Readings jumped: {listed}.",
         "A wire or wiper is loose there: check its three wires, solder instead of clamping, replace a worn track.",
     )
 
@@ -118,11 +118,11 @@ def _noise(quiet: list[Quiet]) -> Finding:
     loud = [pot for pot in range(len(POTS)) if noise[pot] > MUCH_NOISE]
     if not loud:
         return Finding("noise", Verdict.GOOD, f"At most {noise.max():.1f} counts rms.")
-    told = ", ".join(f"{pot_name(pot)} {noise[pot]:.1f}" for pot in loud)
+    listed = ", ".join(f"{pot_name(pot)} {noise[pot]:.1f}" for pot in loud)
     return Finding(
         "noise",
         Verdict.BAD if noise.max() > MOST_NOISE else Verdict.NOTE,
-        f"Noisy, in counts rms: {told}.",
+        f"Noisy, in counts rms: {listed}.",
         "Put 100 nF from wiper to ground at the board's pin, keep motor wires away, feed the potentiometers from 5V.",
     )
 
@@ -131,11 +131,11 @@ def _hums(quiet: list[Quiet]) -> Finding:
     humming = [pot for pot, one in enumerate(quiet) if one.hum > MUCH_HUM]
     if not humming:
         return Finding("hum", Verdict.GOOD, f"At most {max(one.hum for one in quiet):.1f} counts of mains hum.")
-    told = ", ".join(f"{pot_name(pot)} {quiet[pot].hum:.1f} counts at {quiet[pot].hum_hz:g} Hz" for pot in humming)
+    listed = ", ".join(f"{pot_name(pot)} {quiet[pot].hum:.1f} counts at {quiet[pot].hum_hz:g} Hz" for pot in humming)
     return Finding(
         "hum",
         Verdict.NOTE,
-        f"Mains hum: {told}.",
+        f"Mains hum: {listed}.",
         "Join the grounds of supply, board and computer at one point, and twist each wiper's wire with its ground.",
     )
 
@@ -148,6 +148,6 @@ def _hum(rest: Floats, hertz: float) -> float:
 
 
 def _names(pots: list[int]) -> str:
-    told = [pot_name(pot) for pot in pots]
-    text = told[0] if len(told) == 1 else ", ".join(told[:-1]) + " and " + told[-1]
+    names = [pot_name(pot) for pot in pots]
+    text = names[0] if len(names) == 1 else ", ".join(names[:-1]) + " and " + names[-1]
     return upper_first(text)

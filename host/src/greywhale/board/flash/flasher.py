@@ -52,13 +52,13 @@ def _expected_board(port: str, named: str | None) -> str | None:
     """The board that was named, else what the port says of itself without being opened."""
     if named is not None and named not in BOARDS:
         raise BadUsage(f"board {named!r} is unknown; choose one of {', '.join(BOARDS)}.")
-    told = board_of(port)
-    if named is not None and told is not None and named != told:
+    known = board_of(port)
+    if named is not None and known is not None and named != known:
         raise BadUsage(
-            f"{port}: this port belongs to an {BOARDS[told].title}, not to an {BOARDS[named].title}; "
+            f"{port}: this port belongs to an {BOARDS[known].title}, not to an {BOARDS[named].title}; "
             "leave --board out, or choose another port."
         )
-    return named or told
+    return named or known
 
 
 def find_board(port: str, expected: str | None) -> tuple[str, Bootloader]:

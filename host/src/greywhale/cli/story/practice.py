@@ -59,9 +59,9 @@ def practise(
     untuned = tables(base)[0]
     designed = design(nominal, pose, table=untuned, seconds=seconds, budget=DESIGN_BUDGET, report=named("practice"))
     save_leader(motion, designed.motion)
-    path, told = folder / "practice.csv", named("practice")
+    path, note = folder / "practice.csv", named("practice")
     first = record_with(  # while the person holds the leader still
-        bench, rest, paper_table(UNTUNED), told, lambda device: record_led(device, path, designed.motion, progress=told)
+        bench, rest, paper_table(UNTUNED), note, lambda device: record_led(device, path, designed.motion, progress=note)
     )
     logs = [first.log()]
     for number, (name, controller) in enumerate(CHECKS):

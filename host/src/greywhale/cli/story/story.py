@@ -113,10 +113,10 @@ class _Stage:
     def follow(self, leader: Path, file: str, name: str, controller: Path | None = None) -> Run:
         """Record the motion that is shown once; without a controller, with those that the board has."""
 
-        def told(what: str, fraction: float) -> None:
+        def note(what: str, fraction: float) -> None:
             self._report(f"{name}: {what}", fraction)
 
-        recorded = record_motion(self._bench, leader, self._options.out / f"{file}.csv", controller, told)
+        recorded = record_motion(self._bench, leader, self._options.out / f"{file}.csv", controller, note)
         return Run(name, recorded, evaluate(recorded.log()))
 
     def learn(self) -> learn.Learnt:

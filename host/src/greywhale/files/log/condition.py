@@ -54,7 +54,7 @@ def judge_condition(name: str, facts: Mapping[str, str], crc: int, time_s: NDArr
         Check.CHANGED: ("its check fails: rows or header are not as they were recorded.",),
     }[check]
     odd = () if "every_ticks" in facts else doubt_spacing(time_s)
-    return Condition(check, gaps, remarks + odd + ((_told(gaps),) if gaps else ()))
+    return Condition(check, gaps, remarks + odd + ((_describe(gaps),) if gaps else ()))
 
 
 def gaps_in(time_s: NDArray[np.float64]) -> tuple[Gap, ...]:
@@ -69,7 +69,7 @@ def gaps_in(time_s: NDArray[np.float64]) -> tuple[Gap, ...]:
     )
 
 
-def _told(gaps: tuple[Gap, ...]) -> str:
+def _describe(gaps: tuple[Gap, ...]) -> str:
     each = [f"{gap.length_s:.7g} s ({counted(gap.samples, 'sample')}) after {gap.after_s:.7g} s" for gap in gaps]
     more = f", and {counted(len(gaps) - _NAMED, 'gap')} more" if len(gaps) > _NAMED else ""
     return f"samples are missing for {', '.join(each[:_NAMED])}{more}; nothing is known of the arm there."

@@ -65,15 +65,15 @@ def tell_off(log: Log) -> str:
 
 def tell_undriven(log: Log, rows: NDArray[np.bool_]) -> dict[int, str]:
     """A clause for each single joint that moved or was led in these rows without a voltage."""
-    told = {}
+    clauses = {}
     for joint in undriven(log, rows):
         led, moved = (_range(angles, rows, joint) for angles in (log.leader, log.follower))
         if max(led, moved) > MOTION_RAD:
-            told[joint] = (
+            clauses[joint] = (
                 f"joint {joint} had {_volts(log, rows, joint)} in every row, while its leader moved by {led:.2g} rad "
                 f"and its follower by {moved:.2g} rad: check its motor's wires and its voltage column"
             )
-    return told
+    return clauses
 
 
 def tell_powerless(log: Log) -> list[str]:
