@@ -111,7 +111,7 @@ def parameters(draw: Random) -> dict[str, int]:
 
 
 def _near(draw: Random, values: dict[str, int]) -> dict[str, int]:
-    """The same set, some of its parameters drawn anew, for all joints together."""
+    """A set near another: some of its parameters drawn anew, for all joints together."""
     drawn = parameters(draw)
     names = sorted({key.partition(".")[2] or key for key in values})
     again = {name for name in names if draw.random.random() < 0.25}
