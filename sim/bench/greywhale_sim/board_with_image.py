@@ -85,7 +85,7 @@ class BoardWithImage:
         return self.ask(schema.StatusRequest())
 
     def stage(self, changes: Mapping[str, int], fresh: bool = False) -> list[int]:
-        """Send the defaults but for these raw values; all values. On a `fresh` board all others are defaults already."""
+        """Send the defaults but for these raw values; all values. On a `fresh` board others are defaults."""
         changed = {schema.PARAMETER_BY_NAME[name].index: raw for name, raw in changes.items()}
         values = [changed.get(index, raw) for index, raw in enumerate(schema.DEFAULTS)]
         for index in changed if fresh else range(len(values)):
