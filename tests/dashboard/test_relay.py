@@ -7,7 +7,7 @@ from collections import Counter
 import pytest
 
 from greywhale.base.errors import UserError
-from greywhale.dashboard.relay import LEASE_MS, SILENCE_S
+from greywhale.dashboard.lease import LEASE_MS, SILENCE_S
 from greywhale.dashboard.requests import ANSWER_S
 from greywhale.protocol import schema
 from greywhale.protocol.frames import FrameDecoder

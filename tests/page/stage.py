@@ -240,7 +240,7 @@ class _PacedRelay(Relay):
 
     def seen(self, client: Client) -> None:
         super().seen(client)
-        if self._driver in (client, None) and not (self._verb and self.moves):
+        if self.members.driver in (client, None) and not (self.members.verb and self.moves):
             self._let_live()
 
     def release(self, client: Client) -> None:

@@ -1,4 +1,4 @@
-"""What chance explains: damage whose CRC is right, and how often that may be."""
+"""The share of damage whose CRC is right by chance, and counts that chance does not explain."""
 
 from __future__ import annotations
 

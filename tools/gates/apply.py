@@ -24,7 +24,7 @@ SETS, SEED = 6, 5
 
 @dataclass(frozen=True)
 class Applied:
-    """What applying some sets has cost."""
+    """The cost of applying some sets."""
 
     cycles: dict[str, int]  # step -> the most that it has taken, interrupts included
     late_ticks: int  # that were counted

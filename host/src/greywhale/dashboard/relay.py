@@ -15,31 +15,20 @@ from greywhale.base.errors import UserError
 from greywhale.board.refusal import upper_first
 from greywhale.dashboard.client import STARTS, Client
 from greywhale.dashboard.history import History
+from greywhale.dashboard.lease import LEASE_MS, Due, Lease
+from greywhale.dashboard.members import Members
 from greywhale.dashboard.outbox import Message
 from greywhale.dashboard.requests import Asked, Requests
+from greywhale.dashboard.silence import Silence, Step
 from greywhale.dashboard.stored import StoredSet
 from greywhale.protocol import schema
 from greywhale.protocol.frames import Frame, FrameDecoder, encode_frame
 from greywhale.protocol.ports import is_bench
 from greywhale.protocol.transport import Line
 
-# The motors go off when the page that drives says nothing for so long; the board's lease ends them if this host hangs.
-# A page may be busy for some tenths of a second, and is not gone. One that is closed is noticed at once.
-SILENCE_S = 0.5
-LEASE_MS = 250
-RENEW_S = 0.06
-# A board that sent no sample for so long may have restarted. A bootloader to which anybody speaks stays for 5 s. So its
-# lease is not renewed; soon, when this host's own delay cannot be the reason, pages are told, and nothing but their
-# stop is sent; when its firmware must run, it is asked for samples again; at last it is given up.
-QUIET_S = 0.1
-TOLD_S = 0.5
-ASK_AGAIN_S = 6.0
-GIVE_UP_S = 7.0
-
 # What changes nothing, and what must always get through.
 _FOR_ALL = {schema.HelloRequest.TYPE, schema.StatusRequest.TYPE, schema.ParamGetRequest.TYPE, schema.StopRequest.TYPE}
 _LEASES = {*STARTS, schema.RenewRequest.TYPE}
-_AT_REST = (schema.State.DISABLED, schema.State.FAULT)
 _STATE = 4  # place of the state in a sample's payload
 
 
@@ -62,19 +51,15 @@ class Relay:
     def __init__(self, history: History) -> None:
         self.history = history
         self._lock = threading.RLock()
-        self._clients: list[Client] = []
-        self._driver: Client | None = None
-        self._verb: Client | None = None
+        self.members = Members()
         self._board: _Open | None = None
         self._link: Message = {"kind": "link", "open": False, "port": "", "sentence": ""}
         self._stored = StoredSet()
         self._decoder = FrameDecoder()
         self._requests = Requests()
-        self._motors: Client | None = None  # the page for which they run
-        self._confirmed = False  # that they do
-        self._renewed_s = self._heard_s = 0.0
+        self._lease = Lease()  # of the page for which the motors run
+        self._silence = Silence()
         self._stops = 0  # asked for by people
-        self._asked_again = self._told_silent = False
 
     # --- the board --------------------------------------------------------------------------------------------------
 
@@ -90,8 +75,7 @@ class Relay:
             self._decoder = FrameDecoder()
             self._stored = StoredSet()
             self._requests.begin(line)
-            self._motors = None
-            self._told_silent = False
+            self._lease.end()
             self._want_samples()
             self._tell_link(True, port, "")
             self._tell_stored()
@@ -101,9 +85,10 @@ class Relay:
         with self._lock:
             if self._board is not None:
                 self._ask_for_samples(0)  # whoever opens the port next asks for samples by himself
-            self._board = self._motors = None
-            if self._verb is not None:
-                self._verb.outbox.add_answer({"kind": "gone"})
+            self._board = None
+            self._lease.end()
+            if self.members.verb is not None:
+                self.members.verb.outbox.add_answer({"kind": "gone"})
             if self._link["sentence"] != sentence or self._link["open"]:
                 self._tell_link(False, port, sentence)
 
@@ -127,15 +112,13 @@ class Relay:
                 return
             now_s = self._board.line.clock()
             self._requests.look(now_s)
-            self._look_for_samples(now_s - self._heard_s)
-            page = self._motors
-            if page is None:
-                return
-            if now_s > page.seen_s + SILENCE_S:
+            self._look_for_samples(now_s)
+            page = self._lease.page
+            due = self._lease.look(now_s, self._silence.heard_s)
+            if page is not None and due is Due.STOP:
                 self._stop()
                 self._refuse(page, "the motors are off: the page that drives fell silent.")
-            elif now_s >= self._renewed_s + RENEW_S and now_s <= self._heard_s + QUIET_S:
-                self._renewed_s = now_s
+            elif due is Due.RENEWAL:
                 self._requests.send_soon(Asked(schema.RenewRequest.TYPE), schema.RenewRequest(LEASE_MS).pack())
 
     # --- clients ----------------------------------------------------------------------------------------------------
@@ -148,7 +131,7 @@ class Relay:
     def require(self, wish: Wish) -> None:
         """Refuse a verb whose page drives no more, or that a stop has overtaken."""
         with self._lock:
-            if self._driver is None or self._driver.id != wish.page:
+            if not self.members.is_driven_by(wish.page):
                 raise UserError("this page only watches; let it drive first.")
             if self._stops != wish.stops:
                 raise UserError("a stop came while the verb began; start the verb again.")
@@ -156,7 +139,7 @@ class Relay:
     def require_bench(self, page: str) -> None:
         """Refuse what changes a bench while another page drives its arm."""
         with self._lock:
-            if self._driver is not None and self._driver.id != page:
+            if self.members.driver is not None and not self.members.is_driven_by(page):
                 raise UserError("another page drives this arm, and with it the bench; let go there first.")
 
     def join(self, client: Client, wish: Wish | None = None) -> None:
@@ -164,48 +147,48 @@ class Relay:
         with self._lock:
             if wish is not None:
                 self.require(wish)
-                if self._verb is not None:
+                if self.members.verb is not None:
                     raise UserError("another verb uses the board; wait for its end, or stop it.")
-            self._clients.append(client)
+            self.members.add(client)
             if client.verb is None:
                 client.outbox.add_answer({"kind": "page", "id": client.id})
                 client.outbox.add_answer(self._link)
                 client.outbox.add_answer(self._stored_word())
-            else:
-                self._verb = client
-            self._tell_drivers()
+            self.members.tell_driver()
 
     def leave(self, client: Client) -> None:
         """A client has gone: what runs for it is stopped."""
         with self._lock:
-            if client in self._clients:
-                self._clients.remove(client)
-                if client is self._verb:
-                    self._verb = None
+            if client in self.members.clients:
+                runs = client is self.members.verb
+                self.members.remove(client)
+                if runs:
                     self._stop()
                 self.release(client)
-                self._tell_drivers()
+                self.members.tell_driver()
 
     def drive(self, client: Client) -> None:
         """Let a page drive, if no other one does."""
         with self._lock:
             self.seen(client)
-            if self._driver is None and client in self._clients:
-                self._driver = client
-                self._tell_drivers()
-            elif self._driver is not client:
+            if self.members.driver is None and client in self.members.clients:
+                self.members.driver = client
+                self.members.tell_driver()
+            elif self.members.driver is not client:
                 self._refuse(client, "another page drives this arm; let go there first.")
 
     def release(self, client: Client) -> None:
         """Let another page drive; motors that run for this one go off."""
         with self._lock:
-            if self._driver is client:
-                self._driver = None
-                if self._motors is client or self._verb is not None:
+            if self.members.driver is client:
+                self.members.driver = None
+                if self._lease.page is client or self.members.verb is not None:
                     self._stop()
-                if self._verb is not None:
-                    self._verb.stop("The page that drove has let go: start the verb again from a page that drives.")
-                self._tell_drivers()
+                if self.members.verb is not None:
+                    self.members.verb.stop(
+                        "The page that drove has let go: start the verb again from a page that drives."
+                    )
+                self.members.tell_driver()
 
     def forbid(self, client: Client) -> None:
         """A verb is stopped by itself: it starts no motor from now on."""
@@ -219,11 +202,9 @@ class Relay:
         """
         with self._lock:
             self._stops += 1
-            for client in self._clients:
+            for client in self.members.clients:
                 client.stop(f"Stopped {where}: start the verb again when the arm may move.")
-            for page in self._pages():
-                if page is not by:
-                    page.outbox.add_answer({"kind": "stopped", "sentence": f"The arm was stopped {where}."})
+            self.members.tell({"kind": "stopped", "sentence": f"The arm was stopped {where}."}, but=by)
 
     def seen(self, client: Client) -> None:
         """A sign of life."""
@@ -238,16 +219,17 @@ class Relay:
 
     # --- inside -----------------------------------------------------------------------------------------------------
 
-    def _look_for_samples(self, silent_s: float) -> None:
+    def _look_for_samples(self, now_s: float) -> None:
         assert self._board is not None
-        if silent_s > GIVE_UP_S:
-            raise UserError(f"{self._board.port}: the board fell silent; check its cable and its supply.")
-        if silent_s > TOLD_S and not self._told_silent:
-            self._told_silent = True
-            self._tell_link(True, self._board.port, f"The board is silent: {_silencers(self._board.port)}?")
-        if silent_s > ASK_AGAIN_S and not self._asked_again:
-            self._asked_again = True
-            self._ask_for_samples(1)
+        match self._silence.look(now_s):
+            case Step.GIVE_UP:
+                raise UserError(f"{self._board.port}: the board fell silent; check its cable and its supply.")
+            case Step.TELL:
+                self._tell_link(True, self._board.port, f"The board is silent: {_silencers(self._board.port)}?")
+            case Step.ASK_AGAIN:
+                self._ask_for_samples(1)
+            case Step.NOTHING:
+                pass
 
     def _request(self, client: Client, frame: Frame) -> None:
         client.note(frame)
@@ -270,7 +252,7 @@ class Relay:
         else:
             self._refuse(client, self._no_board(), frame)
         if client.verb is None:
-            where = "from the page that drives" if client is self._driver else "from a page that watches"
+            where = "from the page that drives" if client is self.members.driver else "from a page that watches"
             self.stopped(where, client)
 
     def _no_board(self) -> str:
@@ -279,13 +261,13 @@ class Relay:
     def _why_not(self, client: Client, frame: Frame) -> str:
         """The reason why a request may not go on, in a sentence."""
         assert self._board is not None
-        if self._board.line.clock() > self._heard_s + TOLD_S:
+        if self._silence.lasts(self._board.line.clock()):
             return "the board is silent; perhaps it has just restarted."
         if frame.type in _FOR_ALL:
             return ""
-        if client.verb is None and self._verb is not None:
-            return f"`greywhale {self._verb.verb}` uses the board; stop it first, or wait for its end."
-        if client.verb is None and self._driver is not client:
+        if client.verb is None and self.members.verb is not None:
+            return f"`greywhale {self.members.verb.verb}` uses the board; stop it first, or wait for its end."
+        if client.verb is None and self.members.driver is not client:
             return "this page only watches; let it drive first."
         return self._why_no_start(client, frame) if frame.type in STARTS else ""
 
@@ -312,8 +294,7 @@ class Relay:
         if client.verb is None and frame.type in _LEASES and len(payload) == schema.EnableRequest.SIZE:
             payload = schema.EnableRequest(LEASE_MS).pack()
             if frame.type in STARTS:
-                self._motors, self._confirmed = client, False
-                self._renewed_s = client.seen_s
+                self._lease.begin(client)
         asked = Asked(frame.type, client, frame.seq)
         if frame.type in STARTS:  # a stop that comes behind it must find it sent
             self._requests.send(asked, payload)
@@ -325,12 +306,11 @@ class Relay:
 
     def _want_samples(self) -> None:
         assert self._board is not None
-        self._heard_s = self._board.line.clock()
-        self._asked_again = False
+        self._silence.begin(self._board.line.clock())
         self._ask_for_samples(1)
 
     def _stop(self, client: Client | None = None, seq: int = 0) -> None:
-        self._motors = None
+        self._lease.end()
         if self._board is not None:
             self._requests.send_stop(client, seq)
 
@@ -338,35 +318,29 @@ class Relay:
         asked = self._requests.answered(frame)
         if asked is None or asked.client is None:
             return
-        if asked.client is self._motors and asked.type in STARTS:
-            self._confirmed = True
-            self._motors = None if frame.type == schema.Nack.TYPE else self._motors
+        if asked.type in STARTS:
+            self._lease.note_answer(asked.client, refused=frame.type == schema.Nack.TYPE)
         asked.client.outbox.add_answer(encode_frame(frame.type, asked.seq, frame.payload))
 
     def _pass_sample(self, frame: Frame, wire: bytes) -> None:
         assert self._board is not None
-        self._heard_s = self._board.line.clock()
-        self._asked_again = False
-        if self._told_silent:
-            self._told_silent = False
+        if self._silence.end(self._board.line.clock()):
             self._tell_link(True, self._board.port, "")
         if len(frame.payload) != schema.Sample.SIZE:
             return
         tick = int.from_bytes(frame.payload[:_STATE], "little")
         self.history.add(tick, wire)
-        if self._motors is not None and self._confirmed and frame.payload[_STATE] in _AT_REST:
-            self._motors = None
-        for client in self._clients:
+        self._lease.note_state(frame.payload[_STATE])
+        for client in self.members.clients:
             if client.every and tick % client.every == 0:
                 client.outbox.add_sample(wire)
 
     def _note_restart(self, frame: Frame, wire: bytes) -> None:
         """The board says hello by itself: it has started, its motors are off, and it sends no samples."""
         assert self._board is not None
-        self._motors = None
-        self._told_silent = False
+        self._lease.end()
         self._requests.forget()
-        for client in self._clients:
+        for client in self.members.clients:
             client.outbox.add_answer(wire)
         self._want_samples()
         cause = schema.HelloReply.unpack(frame.payload).reset_cause.description
@@ -374,24 +348,13 @@ class Relay:
 
     def _tell_link(self, open: bool, port: str, sentence: str) -> None:
         self._link = {"kind": "link", "open": open, "port": port, "sentence": sentence}
-        for client in self._pages():
-            client.outbox.add_answer(self._link)
+        self.members.tell(self._link)
 
     def _stored_word(self) -> Message:
         return {"kind": "stored", "crc": self._stored.crc}
 
     def _tell_stored(self) -> None:
-        for client in self._pages():
-            client.outbox.add_answer(self._stored_word())
-
-    def _tell_drivers(self) -> None:
-        job, verb = (None, None) if self._verb is None else (self._verb.id, self._verb.verb)
-        for client in self._pages():
-            you, free = client is self._driver, self._driver is None
-            client.outbox.add_answer({"kind": "driver", "you": you, "free": free, "job": job, "verb": verb})
-
-    def _pages(self) -> list[Client]:
-        return [client for client in self._clients if client.verb is None]
+        self.members.tell(self._stored_word())
 
 
 def _silencers(port: str) -> str:

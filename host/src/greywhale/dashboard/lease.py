@@ -1,0 +1,66 @@
+"""The lease of the motors that run for a page: it goes on while the page speaks and the board sends samples.
+
+Time is that of the line.
+"""
+
+from __future__ import annotations
+
+from enum import Enum, auto
+
+from greywhale.dashboard.client import Client
+from greywhale.protocol import schema
+
+# The motors go off when the page that drives says nothing for so long; the board's lease ends them if this host hangs.
+# A page may be busy for some tenths of a second, and is not gone. One that is closed is noticed at once.
+SILENCE_S = 0.5
+LEASE_MS = 250
+RENEW_S = 0.06
+QUIET_S = 0.1  # a board that sent no sample for so long may have restarted: its lease is not renewed
+_AT_REST = (schema.State.DISABLED, schema.State.FAULT)
+
+
+class Due(Enum):
+    """The next thing to do for a lease."""
+
+    NOTHING = auto()
+    RENEWAL = auto()
+    STOP = auto()  # its page fell silent
+
+
+class Lease:
+    """At most one, that of the page for which the motors run or are about to."""
+
+    def __init__(self) -> None:
+        self.page: Client | None = None
+        self._confirmed = False  # by the board, that they run
+        self._renewed_s = 0.0
+
+    def begin(self, page: Client) -> None:
+        """A page asks the board to start the motors."""
+        self.page, self._confirmed, self._renewed_s = page, False, page.seen_s
+
+    def end(self) -> None:
+        self.page = None
+
+    def note_answer(self, page: Client, refused: bool) -> None:
+        """The board answers what this page has asked for to start them."""
+        if page is self.page:
+            self._confirmed = True
+            if refused:
+                self.end()
+
+    def note_state(self, state: int) -> None:
+        """A sample tells in which state the board is: motors that it has turned off have no lease."""
+        if self._confirmed and state in _AT_REST:
+            self.end()
+
+    def look(self, now_s: float, heard_s: float) -> Due:
+        """The act that is due now; the board's last sample came at `heard_s`."""
+        if self.page is None:
+            return Due.NOTHING
+        if now_s > self.page.seen_s + SILENCE_S:
+            return Due.STOP
+        if now_s >= self._renewed_s + RENEW_S and now_s <= heard_s + QUIET_S:
+            self._renewed_s = now_s
+            return Due.RENEWAL
+        return Due.NOTHING
