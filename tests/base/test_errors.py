@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from greywhale.base.errors import BAD_USAGE, LONGEST, UserError, require_within
+from greywhale.base.errors import BAD_USAGE, LONGEST_SENTENCE, UserError, require_within
 
 
 def test_numbers_keep_their_range() -> None:
@@ -17,4 +17,4 @@ def test_numbers_keep_their_range() -> None:
 
 
 def test_a_sentence_of_any_length_is_cut() -> None:
-    assert len(UserError(f"{'x' * 5000}.").message) <= LONGEST
+    assert len(UserError(f"{'x' * 5000}.").message) <= LONGEST_SENTENCE

@@ -8,7 +8,7 @@ import pytest
 from greywhale.base.errors import UserError
 from greywhale.files.trajectory import Trajectory
 from greywhale_sim.leader_player import BRING_BACK_S, LET_GO_S, LeaderPlayer
-from greywhale_sim.streamed_leader import FASTEST
+from greywhale_sim.streamed_leader import FASTEST_RAD_S
 
 SLICE = 0.01
 START = 1.0
@@ -124,7 +124,7 @@ def test_leads_live_as_quickly_as_a_hand_and_never_jumps_when_the_motors_go_on_o
             at.append(player.angles)
         if seconds == 0.05:
             np.testing.assert_array_equal(player.hold, player.angles)
-    assert 1.0 < np.abs(np.diff(at, axis=0)).max() / SLICE <= FASTEST + 1e-9
+    assert 1.0 < np.abs(np.diff(at, axis=0)).max() / SLICE <= FASTEST_RAD_S + 1e-9
     np.testing.assert_allclose(at[-1], THERE, atol=1e-3)
 
 

@@ -9,7 +9,7 @@ from greywhale.base.errors import UserError
 from greywhale.board.pots import (
     FOLLOWERS,
     FULL_SCALE,
-    LOOKS,
+    LOOK_SAMPLES,
     POTS,
     PotReadings,
     counts_of,
@@ -25,8 +25,8 @@ from tests.board.fake_board import served
 TABLE = ParameterTable.defaults()
 
 
-def readings(pot: int, counts: int, seen_in: int = LOOKS) -> PotReadings:
-    table = np.full((LOOKS, len(POTS)), 500)
+def readings(pot: int, counts: int, seen_in: int = LOOK_SAMPLES) -> PotReadings:
+    table = np.full((LOOK_SAMPLES, len(POTS)), 500)
     table[:seen_in, pot] = counts
     return PotReadings(table, 4)
 
@@ -54,7 +54,7 @@ def test_the_counts_are_those_that_the_board_has_converted() -> None:
     with served() as (board, device):
         found = read_pots(device, TABLE)
         assert board.asked(schema.TelemetryRequest) == 2, "on, and off again"
-    assert found.counts.shape == (LOOKS, len(POTS))
+    assert found.counts.shape == (LOOK_SAMPLES, len(POTS))
     assert np.all((found.counts > 0) & (found.counts < FULL_SCALE))
     assert found.counts[0].tolist() == [512, 512, 507, 521, 512, 512, 512, 512]
     assert found.complaints() == []
@@ -68,6 +68,6 @@ def test_a_potentiometer_that_is_not_there_reads_nothing_wrong() -> None:
     (counts,) = counts_of([sample], table)
     assert counts[7] == FULL_SCALE / 2
     assert counts[6] == pytest.approx(8184 / 16)
-    zeros = np.zeros((LOOKS, 8), dtype=np.int64)
+    zeros = np.zeros((LOOK_SAMPLES, 8), dtype=np.int64)
     assert PotReadings(zeros, 4, (0,)).complaints(range(1, 8)) == []
     assert PotReadings(zeros, 0).complaints() == [], "without rail counts nothing is a rail"

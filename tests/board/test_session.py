@@ -356,6 +356,6 @@ def test_a_client_that_does_not_wait_for_the_answer_is_heard() -> None:
 
 def test_the_names_are_the_users_own(monkeypatch: pytest.MonkeyPatch) -> None:
     ours = meeting.names_of("1:3")
-    assert len(set(ours)) == meeting.NAMES
+    assert len(set(ours)) == meeting.NAMES_PER_PORT
     monkeypatch.setattr(os, "geteuid", lambda: 4711)
     assert not set(ours) & set(meeting.names_of("1:3"))

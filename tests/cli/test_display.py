@@ -8,7 +8,7 @@ import pytest
 from rich.console import Console
 from rich.live import Live
 
-from greywhale.cli.display import EVERY_S, Frame, Lines, Running
+from greywhale.cli.display import LINE_EVERY_S, Frame, Lines, Running
 
 ERASE = "\x1b[2K"
 STEPS = [f"round {number}: {what}" for number in range(1, 11) for what in ("recording", "global search", "tuning")]
@@ -76,13 +76,13 @@ def test_a_pipe_gets_a_line_for_each_step_and_one_every_30_s() -> None:
     lines("recording", 0.5)
     time.now_s = 3.0
     lines("tuning", 0.0)
-    time.now_s = 3.0 + EVERY_S - 1.0
+    time.now_s = 3.0 + LINE_EVERY_S - 1.0
     lines("tuning", 0.25, "cost 2")
     lines.look()
     time.now_s += 1.0
     lines.look()
     lines.look()
-    time.now_s += EVERY_S
+    time.now_s += LINE_EVERY_S
     lines.look()
     assert said == [
         " 0:00  recording",

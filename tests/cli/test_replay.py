@@ -9,7 +9,7 @@ import pytest
 
 from greywhale.board.lead import Plan
 from greywhale.cli import entry
-from greywhale.cli.replay import MOTIONS, SHARE
+from greywhale.cli.replay import FASTEST_LED_SHARE, MOTIONS
 from greywhale.protocol.firmware import FASTEST_LED_RAD_S, JOINTS, POINT_S
 
 LIMITS = np.array([[-2.5] * JOINTS, [2.5] * JOINTS])
@@ -17,7 +17,7 @@ LIMITS = np.array([[-2.5] * JOINTS, [2.5] * JOINTS])
 
 @pytest.mark.parametrize("name", MOTIONS)
 def test_a_named_motion_is_as_fast_as_a_board_can_be_led_and_no_faster(name: str) -> None:
-    plan = Plan.of(MOTIONS[name](fastest_rad_s=SHARE * FASTEST_LED_RAD_S), np.zeros(JOINTS), LIMITS)
+    plan = Plan.of(MOTIONS[name](fastest_rad_s=FASTEST_LED_SHARE * FASTEST_LED_RAD_S), np.zeros(JOINTS), LIMITS)
     fastest = np.abs(np.diff(plan.angles, axis=0)).max() / POINT_S
     assert 0.8 * FASTEST_LED_RAD_S < fastest <= FASTEST_LED_RAD_S
     assert plan.angles.max() == pytest.approx(1.0)

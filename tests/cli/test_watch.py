@@ -16,7 +16,7 @@ import pytest
 from greywhale.board.device import Device
 from greywhale.board.upload import read_parameters
 from greywhale.cli import entry
-from greywhale.cli.watch import EVERY, HEADING, Look, as_table, looks
+from greywhale.cli.watch import HEADING, SAMPLE_EVERY_TICKS, Look, as_table, looks
 from greywhale.protocol import schema
 from greywhale.protocol.schema import Fault, State
 from tests.board.fake_board import FakeBoard, Faults
@@ -51,7 +51,7 @@ def test_in_a_pipe_a_line_each_second_and_at_a_fault(capsys: Captured) -> None:
     heading, *lines = capsys.readouterr().out.splitlines()
     assert heading == HEADING
     rows = [dict(zip(HEADING.split(","), line.split(","), strict=True)) for line in lines]
-    assert [float(row["time_s"]) for row in rows] == pytest.approx([0.0, 1.0, 2.0], abs=EVERY / 1000)
+    assert [float(row["time_s"]) for row in rows] == pytest.approx([0.0, 1.0, 2.0], abs=SAMPLE_EVERY_TICKS / 1000)
     assert {(row["state"], row["fault"]) for row in rows} == {("fault", "pot_low")}
     assert look.fault.startswith("a potentiometer reads") or "rail" in look.fault
     assert [complaint[:24] for complaint in look.complaints] == ["follower potentiometer 2"]

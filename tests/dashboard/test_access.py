@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from greywhale.dashboard.access import LASTS_S, MOST_TICKETS, Access
+from greywhale.dashboard.access import MOST_TICKETS, TICKET_LASTS_S, Access
 
 
 class Clock:
@@ -30,9 +30,9 @@ def test_a_ticket_is_void_when_its_time_is_over() -> None:
     clock = Clock()
     access = Access(80, clock)
     first, second = ticket_of(access.address()), ticket_of(access.address())
-    clock.now_s = LASTS_S
+    clock.now_s = TICKET_LASTS_S
     assert access.exchange(first) == access.token
-    clock.now_s = LASTS_S + 1.0
+    clock.now_s = TICKET_LASTS_S + 1.0
     assert access.exchange(second) is None
     assert access.exchange(ticket_of(access.address())) == access.token
 

@@ -12,7 +12,7 @@ from greywhale.base.errors import UserError
 from greywhale.dashboard.answers import Answers
 from greywhale.dashboard.folder import Folder
 from greywhale.dashboard.history import History
-from greywhale.dashboard.predict import EVERY, predict
+from greywhale.dashboard.predict import ROW_EVERY_TICKS, predict
 from greywhale.dashboard.relay import Relay
 from greywhale.files import controller, parameter_file
 from greywhale.files.arm import content_of, load_arm
@@ -83,7 +83,7 @@ def test_a_prediction_is_the_closed_loops() -> None:
     for told in (found["step"], found["reach"]):
         leader, follower = np.array(told["leader"]), np.array(told["follower"])
         assert leader.shape == follower.shape == (len(told["time_s"]), 4)
-        assert np.diff(told["time_s"]) == pytest.approx(EVERY / 1000)
+        assert np.diff(told["time_s"]) == pytest.approx(ROW_EVERY_TICKS / 1000)
         mean = np.mean((leader - follower) ** 2, axis=0)
         assert told["mse"] == pytest.approx(mean, rel=0.05)
         assert np.abs(told["voltage"]).max() > 1.0

@@ -21,7 +21,7 @@ from greywhale.dashboard.answers import Answers
 from greywhale.dashboard.bucket import Bucket
 from greywhale.dashboard.door import Door
 from greywhale.dashboard.folder import Folder
-from greywhale.dashboard.guard import AT_ONCE, MOST_BODY_BYTES, Guard
+from greywhale.dashboard.guard import MOST_BODY_BYTES, REQUESTS_AT_ONCE, Guard
 from greywhale.files.log.layout import HEADING, TITLE
 from greywhale.protocol import schema
 from greywhale.protocol.frames import FrameDecoder
@@ -162,7 +162,7 @@ def test_a_bucket_lets_so_many_through() -> None:
     assert [bucket.take() for _ in range(5)] == [True, True, True, False, False]
     now[0] = 0.2
     assert [bucket.take() for _ in range(3)] == [True, True, False]
-    assert AT_ONCE > 100, "a page that opens asks for some ten files"
+    assert REQUESTS_AT_ONCE > 100, "a page that opens asks for some ten files"
 
 
 def test_a_board_over_the_wire(page: Page, shared: Shared) -> None:

@@ -188,7 +188,7 @@ def test_a_log_of_another_tool_needs_no_header(path: Path) -> None:
 
 @pytest.fixture
 def small_blocks(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(csv_file, "BLOCK", 1000)
+    monkeypatch.setattr(csv_file, "BLOCK_BYTES", 1000)
 
 
 @given(st.lists(samples, min_size=2, max_size=30))
@@ -273,14 +273,14 @@ def test_only_an_unfinished_log_may_end_in_the_middle_of_a_line(path: Path) -> N
 
 
 def test_a_log_takes_no_more_memory_than_its_numbers(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(csv_file, "BLOCK", 1 << 14)
+    monkeypatch.setattr(csv_file, "BLOCK_BYTES", 1 << 14)
     write(path, 20_000)
     tracemalloc.start()
     log = read_log(path)
     _, most = tracemalloc.get_traced_memory()
     tracemalloc.stop()
     assert len(log.time) == 20_000
-    block = 40 * csv_file.BLOCK  # what the parsing of one block takes
+    block = 40 * csv_file.BLOCK_BYTES  # what the parsing of one block takes
     assert most < 20_000 * 13 * 8 + 20_000 + block
 
 

@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from greywhale.base.study import Task
-from greywhale.board.calibrate.motors import SHARES
+from greywhale.board.calibrate.motors import PULSE_SHARES
 from greywhale.cli.entry import run as verb
 from greywhale.cli.story import RunningBench, record_motion
 from greywhale.files.arm import default_arm
@@ -70,7 +70,7 @@ def is_named(seed: int, name: str) -> bool:
                 code = verb(["doctor", "--port", bench.port, "--seconds", "0.5", "--json", *fault.options])
             told = out.getvalue()
         named = re.search(fault.tells(number), told) is not None
-        within = max(bench.command("pins")["duties"]) <= SHARES[-1] + 1 / 400
+        within = max(bench.command("pins")["duties"]) <= PULSE_SHARES[-1] + 1 / 400
         stored = bool(bench.command("status")["eeprom_writes"])
         return named and within and code == int(fault.ends == "refused") and (code == 0 or not stored)
 

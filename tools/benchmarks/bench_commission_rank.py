@@ -18,7 +18,7 @@ from scipy.stats import spearmanr
 from greywhale.arm import ArmParameters
 from greywhale.base.study import Task
 from greywhale.base.types import Controllers
-from greywhale.cli.story.practice import POSE
+from greywhale.cli.story.practice import START_POSE_RAD
 from greywhale.commission.judge import Limits, judge
 from greywhale.commission.measures import Measures, measure
 from greywhale.commission.motions import Check, JointRange, check_motion
@@ -85,7 +85,7 @@ def led(arm: ArmParameters, table: ParameterTable) -> float:
 def ranked(seed: int) -> dict[str, Any]:
     """The score of each set in the check, and its error in led reaches, both as shares of before."""
     arm, base = worn_arm(seed), ParameterTable.defaults()
-    pose, half = np.array(POSE), 0.4 * (RANGE_RAD[:, 1] - RANGE_RAD[:, 0])
+    pose, half = np.array(START_POSE_RAD), 0.4 * (RANGE_RAD[:, 1] - RANGE_RAD[:, 0])
     check = check_motion(JointRange(pose, pose - half, pose + half))
     before = checked(arm, check, base, 100 * seed)
     scores, errors = [], []

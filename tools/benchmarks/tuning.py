@@ -11,7 +11,7 @@ import numpy as np
 
 from greywhale.arm import ArmParameters
 from greywhale.base.types import Floats
-from greywhale.cli.story.practice import CHECK_SHARE, DESIGN_BUDGET, POSE, PRACTICE_S, tables
+from greywhale.cli.story.practice import CHECK_SHARE, DESIGN_BUDGET, PRACTICE_S, START_POSE_RAD, tables
 from greywhale.files.arm import load_arm
 from greywhale.files.log import Log
 from greywhale.files.trajectory import Trajectory
@@ -53,7 +53,7 @@ def practised(arm: ArmParameters, folder: Path, seed: int) -> list[Log]:
 @cache
 def excitation() -> Trajectory:
     """The motion that shows most about an arm of which only the white box is known."""
-    return design(load_arm("white_box"), POSE, seconds=PRACTICE_S, budget=DESIGN_BUDGET).motion
+    return design(load_arm("white_box"), START_POSE_RAD, seconds=PRACTICE_S, budget=DESIGN_BUDGET).motion
 
 
 @dataclass(frozen=True)

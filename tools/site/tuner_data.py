@@ -186,9 +186,9 @@ def _search(model: Model) -> dict[str, Any]:
     return {
         "budget": BUDGET,
         "pack": PACK if BUDGET < default.SHORT_BUDGET else default.FULL_PACK,
-        "a": shift_invariant.A,
-        "weights": shift_invariant.WEIGHTS,
-        "keep": shift_invariant.KEEP,
+        "a": shift_invariant.A_FACTOR,
+        "weights": shift_invariant.LEADER_WEIGHTS,
+        "keep": shift_invariant.KEEP_PROBABILITY,
         "stages": [
             {
                 "name": stage.name,

@@ -20,9 +20,9 @@ from greywhale_sim.symbols import read_symbols
 from greywhale_sim.wiring import BOARDS
 
 CYCLES_PER_TICK = 16_000
-PAINT = 0xA5
+PAINT_BYTE = 0xA5  # fills free RAM, so that the depth of the stack shows
 PATIENCE_MS = 60  # a control period takes up to 50 ms, a tick 1 ms
-RUNS = 0  # what run_until says of a board that neither ended nor crashed
+STILL_RUNS = 0  # what run_until says of a board that neither ended nor crashed
 SAVE_MS = 1000.0  # a save of a whole set takes up to 910 ms
 UNWATCHED = {"speed_limit": 0, "runaway_limit": 0, "stall_volts": 0}  # potentiometers here move as no arm does
 RUNNING = "_ZN3hal12_GLOBAL__N_17runningE"  # hal's flag, set from the timer's interrupt to the end of the tick
@@ -114,13 +114,13 @@ class BoardWithImage:
     def paint(self) -> None:
         """Fill the memory behind the variables, so that the stack leaves its traces there."""
         start = self.ram[0] + self.statics
-        self.board.poke(start, bytes([PAINT]) * (self.ram[1] - start))
+        self.board.poke(start, bytes([PAINT_BYTE]) * (self.ram[1] - start))
 
     def stack(self) -> int:
         """The most bytes that the stack has had since the memory was painted."""
         start = self.ram[0] + self.statics
         free = self.board.peek(start, self.ram[1] - start)
-        return len(free) - next(i for i, byte in enumerate(free) if byte != PAINT)
+        return len(free) - next(i for i, byte in enumerate(free) if byte != PAINT_BYTE)
 
     # --- cycles
 
@@ -132,7 +132,7 @@ class BoardWithImage:
     def _step_until(self, there: Callable[[], bool], where: str) -> None:
         last = self.board.cycle + PATIENCE_MS * CYCLES_PER_TICK
         while not there():
-            if self.board.run_until(self.board.cycle + 1) != RUNS or self.board.cycle > last:
+            if self.board.run_until(self.board.cycle + 1) != STILL_RUNS or self.board.cycle > last:
                 raise RuntimeError(
                     f"the firmware did not come to {where} within {PATIENCE_MS} ms of the board's time: it crashed, or "
                     "the image is of other sources; build it again with `make firmware`"

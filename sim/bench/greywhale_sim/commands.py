@@ -22,11 +22,11 @@ from greywhale_sim.server import Server
 CommandAnswer = dict[str, Any]
 REACHES = "reaches"
 QUIT = "quit"  # obeyed by whoever reads the commands
-FARTHEST_RAD = 6.28
-MOST_SUPPLY_V = 30.0
-MOST_LOAD_KG = 2.0
-MOST_PUSH_NM = 20.0
-SLOWEST = 0.05  # simulated seconds a second
+FARTHEST_RAD = 6.28  # a turn, of an angle in a command
+MOST_SUPPLY_V = 30.0  # of the motors
+MOST_LOAD_KG = 2.0  # at the end of the arm
+MOST_PUSH_NM = 20.0  # on a joint
+SLOWEST_SPEED = 0.05  # simulated seconds a second
 _WIRINGS = {
     "connected": arm.Wiring.CONNECTED,
     "open": arm.Wiring.OPEN,
@@ -161,7 +161,7 @@ def power(server: Server, switch: str, writes: str = "0") -> CommandAnswer:
 
 def speed(server: Server, value: str) -> CommandAnswer:
     rate = 1.0 if value == "max" else float(value)
-    if not SLOWEST <= rate <= 1.0:
+    if not SLOWEST_SPEED <= rate <= 1.0:
         raise ValueError
     server.fast, server.rate = value == "max", rate
     return {"speed": value}
@@ -215,7 +215,7 @@ def controls(server: Server) -> CommandAnswer:
             for one in faults.FAULTS
         ],
         "supply": {"minimum": 0.0, "maximum": MOST_SUPPLY_V, "value": bench.supply_v},
-        "speed": {"minimum": SLOWEST, "maximum": 1.0, "value": server.rate},
+        "speed": {"minimum": SLOWEST_SPEED, "maximum": 1.0, "value": server.rate},
         "power": server.board.powered,
     }
     if bench.tip_kg is not None:
@@ -245,6 +245,6 @@ COMMANDS: dict[str, tuple[Callable[..., CommandAnswer], str]] = {
     "load": (load, "KG"),
     "obstacle": (obstacle, "0..3 DEGREES|none"),
     "push": (push, "0..3 NM"),
-    "speed": (speed, f"{SLOWEST:g}..1|max"),
+    "speed": (speed, f"{SLOWEST_SPEED:g}..1|max"),
     "controls": (controls, ""),
 }

@@ -19,8 +19,8 @@ from greywhale_sim.board_supply import SharedSupply
 POTS = tuple(f"{side}{joint}" for side in ("leader", "follower") for joint in range(JOINTS))
 WHERE = {"pot": POTS, "motor": tuple(map(str, range(JOINTS))), "arm": ("",)}
 USUAL = {"pot": "follower1", "motor": "1", "arm": ""}
-WEAK_GAIN = 0.2
-OTHER_SUPPLY_V = 24.0
+WEAK_GAIN = 0.2  # of a healthy motor's torque
+OTHER_SUPPLY_V = 24.0  # of a power supply taken by mistake
 NOTHING = "none"
 
 

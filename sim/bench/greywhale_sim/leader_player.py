@@ -22,7 +22,7 @@ Place = tuple[Floats | None, Floats | None, float]  # of leader and follower, No
 
 START_S = 1.5  # from enable to the first movement: the soft start takes 1 s
 LET_GO_S = 0.5  # from motors off to the hand on the follower
-BRING_BACK_S = 1.0
+BRING_BACK_S = 1.0  # from where the arms are to the first pose
 
 
 class LeaderPlayer:

@@ -11,7 +11,7 @@ import random
 
 from greywhale.base.errors import UserError
 
-SAME = 0.02  # closer rates cannot miss a bit: skip the bit model
+SAME_RATE_SHARE = 0.02  # closer rates cannot miss a bit: skip the bit model
 ANY_BAUD = math.inf  # of a line without a speed: as its other end has it
 
 
@@ -24,7 +24,7 @@ def resample(data: bytes, sender_baud: float, receiver_baud: float) -> bytes:
     if ANY_BAUD in (sender_baud, receiver_baud):
         return data
     ratio = sender_baud / receiver_baud  # sent bits in one of the receiver's
-    if abs(ratio - 1.0) <= SAME:
+    if abs(ratio - 1.0) <= SAME_RATE_SHARE:
         return data
     levels = [bit for byte in data for bit in (0, *((byte >> shift) & 1 for shift in range(8)), 1)]
     received = bytearray()

@@ -11,9 +11,9 @@ from greywhale.base.errors import UserError
 from greywhale_sim.server import Server
 
 ENDS_DEG = (75.0, -70.0)  # of a sweep, the positive one first; no track ends in between
-HANGING_DEG = (0.0, -80.0, 0.0, 0.0)
-EACH_WAY_S, PAUSE_S, BRING_S = 1.5, 0.1, 1.0
-FARTHEST_DEG, LONGEST_S = 359.0, 60.0
+HANGING_DEG = (0.0, -80.0, 0.0, 0.0)  # of joints 0..3
+EACH_WAY_S, PAUSE_S, BRING_S = 1.5, 0.1, 1.0  # of a sweep, at its ends, and to a pose
+FARTHEST_DEG, LONGEST_S = 359.0, 60.0  # that a command may ask for
 
 HELP = """\
 turn leader 0      leader joint 0 to its positive end, its negative end, back

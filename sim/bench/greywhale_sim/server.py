@@ -13,8 +13,8 @@ from greywhale_sim.pacing import Pacer, wants_real_time
 
 REAL_TIME_SLICES = 4  # 1 ms: as often as a USB port is served
 FAST_SLICES = 16  # a fifth of the time goes into the port otherwise
-IDLE_SLICES = 32
-EEPROM_CHECK_S = 0.05
+IDLE_SLICES = 32  # 8 ms, where nobody has opened the port
+EEPROM_CHECK_S = 0.05  # between two looks whether the EEPROM has changed
 
 
 class Port(Protocol):

@@ -12,7 +12,7 @@ from greywhale.protocol.socket_line import PREFIX, address_of
 from greywhale_sim.line import ANY_BAUD
 
 LOOPBACK = "127.0.0.1"
-PIECE = 4096
+PIECE_BYTES = 4096
 KEPT_BYTES = 65536  # for a host that does not come to read, beside what the system keeps
 
 
@@ -60,7 +60,7 @@ class SocketPort:
         if self._user is None:
             return b""
         try:
-            data = self._user.recv(PIECE)
+            data = self._user.recv(PIECE_BYTES)
         except BlockingIOError:
             return b""
         except OSError:

@@ -6,8 +6,8 @@ import numpy as np
 
 from greywhale.base.types import Floats
 
-# A critically damped pull (1/s): nine tenths of a short way take 0.16 s. No hand turns a joint faster (rad/s).
-PULL, FASTEST = 25.0, 5.0
+# A critically damped pull: nine tenths of a short way take 0.16 s. No hand turns a joint faster than the other.
+PULL_PER_S, FASTEST_RAD_S = 25.0, 5.0
 
 
 class StreamedLeader:
@@ -25,7 +25,7 @@ class StreamedLeader:
     def step(self, slice_s: float) -> None:
         angles, speeds = self.angles.tolist(), self._speeds
         for joint, target in enumerate(self.target.tolist()):  # quicker than array arithmetic on so few numbers
-            pull = PULL * PULL * (target - angles[joint]) - 2.0 * PULL * speeds[joint]
-            speeds[joint] = min(max(speeds[joint] + slice_s * pull, -FASTEST), FASTEST)
+            pull = PULL_PER_S * PULL_PER_S * (target - angles[joint]) - 2.0 * PULL_PER_S * speeds[joint]
+            speeds[joint] = min(max(speeds[joint] + slice_s * pull, -FASTEST_RAD_S), FASTEST_RAD_S)
             angles[joint] += slice_s * speeds[joint]
         self.angles = np.array(angles)

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from greywhale.board.calibrate.motors import LEASE_MS, SHARES
+from greywhale.board.calibrate.motors import LEASE_MS, PULSE_SHARES
 from greywhale.board.device import Device
 from greywhale.cli.entry import run
 from greywhale.cli.story import RunningBench
@@ -49,5 +49,5 @@ def test_calibrate_names_it_and_no_motor_gets_more_than_a_pulse(
     assert re.search(fault.tells(WHERE[fault.on].index(place)), done.said + done.printed), done.said + done.printed
     assert done.code == ENDS[fault.ends]
     assert backup.exists() == (done.code == 0)
-    assert max(seen["duties"]) <= SHARES[-1] + PWM_STEP
+    assert max(seen["duties"]) <= PULSE_SHARES[-1] + PWM_STEP
     assert seen["longest_on_s"] <= LEASE_MS / 1000 + 0.002

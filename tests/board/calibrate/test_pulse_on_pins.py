@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 import pytest
 
-from greywhale.board.calibrate.motors import LEASE_MS, SHARES, WAY_RAD, pulse_table
+from greywhale.board.calibrate.motors import LEASE_MS, PULSE_SHARES, PULSE_WAY_RAD, pulse_table
 from greywhale.protocol import schema
 from greywhale.protocol.firmware import STEP_LSB
 from greywhale.protocol.table import ParameterTable
@@ -44,7 +44,7 @@ def test_the_strongest_pulse_keeps_its_limits_on_the_pins(joint: int, sign: floa
     """The host asks for nothing after the point, as one that was killed."""
     host = LockStep(build_bench(BenchOptions()))
     host.boot()
-    volts = SHARES[-1] * TABLE.supply_v
+    volts = PULSE_SHARES[-1] * TABLE.supply_v
     set_parameters(host, pulse_table(TABLE, joint, volts).changes())
     host.bench.wire_motor(joint, sign, joint)
     for way in (1, -1):
@@ -53,7 +53,7 @@ def test_the_strongest_pulse_keeps_its_limits_on_the_pins(joint: int, sign: floa
         host.bench.trace = seen.look
         begun = host.ask(schema.LeadRequest(LEASE_MS))
         step = [0, 0, 0, 0]
-        step[joint] = way * round(WAY_RAD / STEP_LSB)
+        step[joint] = way * round(PULSE_WAY_RAD / STEP_LSB)
         host.send(schema.LeadPointRequest(begun.next, (step[0], step[1], step[2], step[3])))
         host.run(1.0)
         host.bench.trace = None

@@ -11,7 +11,7 @@ import pytest
 from greywhale.arm.parameters import JOINT_NAMES
 from greywhale.base.errors import UserError
 from greywhale.board.calibrate.person import PersonAnswer, Watch
-from greywhale.board.calibrate.walk import HELD_TICKS, TRIES, Walk
+from greywhale.board.calibrate.walk import HELD_TICKS, SCRIPT_TRIES, Walk
 from greywhale.board.calibrate.words import POSITIVE_WAYS, poses_asked
 from greywhale.board.pots import FULL_SCALE
 from greywhale.protocol import schema
@@ -195,7 +195,7 @@ def test_many_mistakes_in_one_sweep_lose_no_other() -> None:
     script, way = walk(
         [
             *sweeps([0]),
-            *(wrong * (TRIES + 2)),
+            *(wrong * (SCRIPT_TRIES + 2)),
             wrong[0],
             ("Follower joint 0, base yaw: mend it", rest, BACK),
             *sweeps([0, 4]),
@@ -205,11 +205,11 @@ def test_many_mistakes_in_one_sweep_lose_no_other() -> None:
     )
     way.go()
     assert script.left == []
-    assert sum("did not move: check that its shaft" in told for told in script.told) == TRIES + 3
+    assert sum("did not move: check that its shaft" in told for told in script.told) == SCRIPT_TRIES + 3
 
 
 def test_a_script_makes_a_mistake_but_a_few_times() -> None:
-    script, way = walk([*sweeps([0]), *([("Sweep 2 of 2", rest, DONE)] * TRIES)], joints=(0,), patient=False)
+    script, way = walk([*sweeps([0]), *([("Sweep 2 of 2", rest, DONE)] * SCRIPT_TRIES)], joints=(0,), patient=False)
     with pytest.raises(UserError, match="port: Follower potentiometer 0 reads 500 to 500 of 1023 and did not move"):
         way.go()
     assert script.left == []
@@ -233,7 +233,7 @@ def test_wires_that_are_exchanged_while_one_mends_accuse_nobody() -> None:
 
 @pytest.mark.parametrize("patient", [True, False])
 def test_arms_that_drift_are_asked_to_hold_still_a_person_as_often_as_it_takes(patient: bool) -> None:
-    drifting: list[Step] = [("Pose 1 of 4", drifts(0.02), DONE)] * TRIES
+    drifting: list[Step] = [("Pose 1 of 4", drifts(0.02), DONE)] * SCRIPT_TRIES
     script, way = walk([*sweeps([0, 4]), *drifting, ("Pose 1 of 4", drifts(0.0), DONE), *POSES[1:]], (0,), patient)
     if patient:
         way.go()

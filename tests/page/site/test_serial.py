@@ -9,7 +9,7 @@ import pytest
 from playwright.sync_api import BrowserContext, Page, expect
 
 from greywhale.base.errors import UserError
-from greywhale.board.calibrate.motors import LEASE_MS, SHARES
+from greywhale.board.calibrate.motors import LEASE_MS, PULSE_SHARES
 from greywhale.board.calibrate.solve import MARGIN_RAD
 from greywhale.board.device import Device
 from greywhale.board.flash.images import read_image
@@ -153,7 +153,7 @@ def test_a_board_is_watched_driven_and_changed(context: BrowserContext, site: Si
         press(page, "Try motor 1")
         expect(page.get_by_text("V moved it, the other way round")).to_be_visible()
         seen = bench.command("pins")
-        assert 0.0 < max(seen["duties"]) <= SHARES[-1] + 1 / 400
+        assert 0.0 < max(seen["duties"]) <= PULSE_SHARES[-1] + 1 / 400
         assert seen["longest_on_s"] <= LEASE_MS / 1000 + 0.002
         press(page, "Store")
         expect(page.get_by_role("main")).to_contain_text("What was found runs and is stored.")

@@ -14,7 +14,7 @@ from greywhale.arm.parameters import ArmParameters, Link
 LINK_NAMES = ("base", "upper_arm", "wrist", "hand")
 JOINT_IDS = ("base_yaw", "shoulder_pitch", "wrist_pitch", "wrist_roll")
 _AXES = ((0, 1, 0), (0, 0, 1), (0, 0, 1), (1, 0, 0))
-MJCF_STEP_S = 0.00025
+MJCF_STEP_S = 0.00025  # a slice of the bench
 # MuJoCo's friction and stops are soft; this is as stiff as it takes them at that step.
 _STIFF = {
     "solreffriction": "0.0005 1",

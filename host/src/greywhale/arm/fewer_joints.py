@@ -16,7 +16,7 @@ from greywhale.base.errors import BadUsage, cut
 from greywhale.base.types import Floats
 
 UP = np.array([0.0, 0.0, 1.0])
-NOTHING_KG, NOTHING_KG_M2 = 1e-8, 1e-14
+NOTHING_KG, NOTHING_KG_M2 = 1e-8, 1e-14  # of a link that is not there, but must have some
 SHORTEST_M = 2e-3  # from a joint to the centre of what it moves
 
 

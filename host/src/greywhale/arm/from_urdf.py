@@ -27,8 +27,8 @@ PARALLEL = math.cos(math.radians(1.0))
 ACROSS = math.sin(math.radians(1.0))
 BESIDE_M = 1e-3  # axes that shall meet may pass each other so far
 ASIDE_SHARE, ASIDE_M = 0.15, 5e-3  # of a link's length, a centre of mass beside the link
-SHORTEST_M = 1e-3
-ROUNDING_M = 1e-9
+SHORTEST_M = 1e-3  # of a link: shorter ones have no direction
+ROUNDING_M = 1e-9  # by which sums of lengths may be off
 
 
 @dataclass(frozen=True)

@@ -16,13 +16,13 @@ from greywhale.base.types import Floats
 # Arms that an Arduino moves reach less far.
 FURTHEST_REACH_M = 5.0
 # A body is no further from its own centre than twice the arm's reach; inertias in kg mm2 or g mm2 would make it so.
-MOST_GYRATION = 2.0  # of the reach
+MOST_GYRATION_REACHES = 2.0
 # As heavy as water that fills a cube of the arm's reach; masses in g are more, as a link is slender.
 DENSEST_KG_M3 = 1000.0
 # Rounded digits may break the rules for inertias a little.
-ROUNDING = 0.01
+ROUNDING_SHARE = 0.01
 # A motor with so many times the largest torque of gravity fits another arm, or is given in another unit.
-FAR_TOO_STRONG, FAR_TOO_WEAK = 40.0, 0.1
+FAR_TOO_STRONG_RATIO, FAR_TOO_WEAK_RATIO = 40.0, 0.1
 SLOWEST_RAD_S, FASTEST_RAD_S = 0.05, 60.0  # of a joint that follows a hand
 _PRODUCTS = ((0, 1, "ixy"), (0, 2, "ixz"), (1, 2, "iyz"))
 
@@ -31,7 +31,7 @@ def why_no_body(inertia: Floats) -> str:
     """The reason why no body has this inertia (3, 3), kg m², about its centre of mass; "" where one may."""
     own = np.diag(inertia)
     moments = np.linalg.eigvalsh(inertia)
-    slack = ROUNDING * max(float(np.abs(moments).max()), 0.0)
+    slack = ROUNDING_SHARE * max(float(np.abs(moments).max()), 0.0)
     for moment, name in zip(own, ("ixx", "iyy", "izz"), strict=True):
         if moment < -slack:
             return f"its moment {name} is {moment:g} kg m2, but none is below 0"
@@ -71,7 +71,7 @@ def require_masses(path: Path, joints: Sequence[TurningJoint]) -> None:
     reach, bodies = sum(_ways(joints)), [joint.body for joint in joints[1:]]
     for body in bodies:
         radius = float(np.sqrt(np.linalg.eigvalsh(body.inertia)[2] / body.mass))
-        if radius > MOST_GYRATION * reach:
+        if radius > MOST_GYRATION_REACHES * reach:
             raise BadUsage(
                 f"{path}: the inertia of link {cut(body.names[0])} is that of a ring with a radius of {radius:.3g} m, "
                 f"on an arm of {reach:.3g} m; inertias are in kg m2 (1 kg mm2 is 1e-6, 1 g mm2 is 1e-9): correct it."
@@ -101,12 +101,12 @@ def doubts(joints: Sequence[TurningJoint], found: Sequence[JointSummary]) -> lis
                 f"{name} has a friction of {joint.friction:g} N m and an effort of {joint.effort:g} N m: its motor "
                 "cannot turn it."
             )
-        if largest > 0.0 and one.stall > FAR_TOO_STRONG * largest:
+        if largest > 0.0 and one.stall > FAR_TOO_STRONG_RATIO * largest:
             doubts.append(
                 f"{name} has an effort of {joint.effort:g} N m, {one.stall / largest:.0f} times the largest torque of "
                 "gravity on this arm: write what its motor really gives, in N m."
             )
-        elif one.stall < FAR_TOO_WEAK * one.gravity:
+        elif one.stall < FAR_TOO_WEAK_RATIO * one.gravity:
             doubts.append(
                 f"{name} has an effort of {joint.effort:g} N m against {one.gravity:.3g} N m of gravity: is the effort "
                 "in N m, and are the masses in kg?"

@@ -15,7 +15,7 @@ from greywhale.protocol.joints import Joints
 # The usual potentiometer: a track of 300 degrees, and noise of half a step of the board's converter (V rms).
 USUAL_TRACK_RAD = math.radians(300.0)
 USUAL_NOISE_V = 0.0024
-MOST_NOISE_V = 0.5
+MOST_NOISE_V = 0.5  # rms: a tenth of the range, of which no angle could be read
 JOINT_NAMES = ("base yaw", "shoulder pitch", "wrist pitch", "wrist roll")
 PAPER_IYY0 = 8.26e-3  # as printed in the paper's Table 3
 

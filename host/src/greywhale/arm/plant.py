@@ -5,7 +5,7 @@ from __future__ import annotations
 from greywhale import _native
 from greywhale.arm.parameters import ArmParameters, PotentiometerBank
 
-LONGEST_STEP = 0.25e-3  # s
+LONGEST_STEP_S = 0.25e-3
 
 
 class Arm(_native.Arm):
@@ -15,7 +15,7 @@ class Arm(_native.Arm):
     after a reset.
     """
 
-    def __init__(self, parameters: ArmParameters, seed: int = 0, longest_step: float = LONGEST_STEP) -> None:
+    def __init__(self, parameters: ArmParameters, seed: int = 0, longest_step: float = LONGEST_STEP_S) -> None:
         super().__init__(parameters.native(), seed, longest_step)
         self.parameters = parameters
 

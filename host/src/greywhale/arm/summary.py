@@ -11,8 +11,8 @@ from greywhale.arm.body import Body
 from greywhale.arm.parameters import JOINT_NAMES, ArmParameters
 from greywhale.arm.plants import plant_row
 
-PITCHES = (1, 2)  # only these feel gravity
-MUCH = 0.5  # of the stall torque: what is left moves a joint slowly
+PITCH_JOINTS = (1, 2)  # only these feel gravity
+MUCH_GRAVITY_SHARE = 0.5  # of the stall torque: what is left moves a joint slowly
 
 
 @dataclass(frozen=True)
@@ -67,12 +67,12 @@ def _warnings(arm: ArmParameters, joint: int, one: JointSummary) -> list[str]:
             f"{name} cannot lift the arm: stretched out it needs {one.gravity:.3g} N m, and its motor has "
             f"{one.stall:.3g} N m at {arm.drive.supply:g} V; take a stronger motor, more gear or a spring."
         )
-    elif one.share > MUCH:
+    elif one.share > MUCH_GRAVITY_SHARE:
         warnings.append(
             f"{name} lifts the arm with {100 * one.share:.0f} % of its motor's torque; little is left to move it, and "
             "a motor that holds so much gets hot; half is a good limit, a third is better."
         )
-    if joint in PITCHES and not one.holds:
+    if joint in PITCH_JOINTS and not one.holds:
         warnings.append(f"{name} sinks when its motor is off: support the arm before you switch off.")
     turn = stops.max - stops.min
     if turn > arm.follower_pots.joint[joint].track:

@@ -14,11 +14,11 @@ from greywhale.arm.urdf_joint import Body, TurningJoint
 from greywhale.base.errors import BadUsage, UserError, cut, os_reason
 from greywhale.base.types import Floats
 
-LARGEST = 4 << 20  # bytes
-HEAVIEST_KG = 1e4
-FURTHEST = 1e6  # m or rad; what lies beyond would only overflow
+LARGEST_FILE_BYTES = 4 << 20
+HEAVIEST_KG = 1e4  # of a link; what is heavier would only overflow
+LARGEST_NUMBER = 1e6  # m or rad; what is larger would only overflow
 TURNING = ("revolute", "continuous")
-FULL_TURNS = 2.0 * math.tau  # rad: limits beyond, to either side, are in degrees
+WIDEST_LIMIT_RAD = 2.0 * math.tau  # to either side; wider limits are in degrees
 _XACRO = "xacro}"  # how its elements' names go on after the address of their namespace
 _CORRECT = "correct it"
 _ELSEWHERE = "choose another description of the arm, or write arm.toml by hand (docs/arm.md)"
@@ -28,10 +28,10 @@ def read_chain(path: Path) -> tuple[str, list[TurningJoint]]:
     """The robot's name and its joints from the base outwards. Raises UserError where it is no serial chain."""
     try:
         with path.open("rb") as file:
-            content = file.read(LARGEST + 1)
+            content = file.read(LARGEST_FILE_BYTES + 1)
     except OSError as error:
         raise BadUsage(f"{path}: cannot be read: {os_reason(error)}.") from None
-    if len(content) > LARGEST or b"<!ENTITY" in content or b"<!DOCTYPE" in content:
+    if len(content) > LARGEST_FILE_BYTES or b"<!ENTITY" in content or b"<!DOCTYPE" in content:
         raise BadUsage(f"{path}: it is larger than 4 MiB, or declares entities; a URDF needs neither.")
     try:
         robot = xml.fromstring(content)
@@ -167,7 +167,7 @@ class _Reader:
             raise self._bad(limits, "exchange the two if that is meant, and look whether its axis points the right way")
         if low == high:
             raise self._bad(f"{limits}, so it cannot turn", "give its limits, or make it fixed")
-        if max(-low, high) > FULL_TURNS:
+        if max(-low, high) > WIDEST_LIMIT_RAD:
             raise self._bad(f"{limits}; limits are in rad, and these look like degrees", _CORRECT)
         return low, high
 
@@ -201,7 +201,7 @@ class _Reader:
         frame = np.eye(4)
         frame[:3, 3] = self._vector(tag, "xyz", where, (0.0, 0.0, 0.0))
         roll, pitch, yaw = self._vector(tag, "rpy", where, (0.0, 0.0, 0.0))
-        if max(abs(roll), abs(pitch), abs(yaw)) > FULL_TURNS:
+        if max(abs(roll), abs(pitch), abs(yaw)) > WIDEST_LIMIT_RAD:
             angles = f"rpy of {cut(where)} is {roll:g} {pitch:g} {yaw:g}"
             raise self._bad(f"{angles}; angles are in rad, and these look like degrees", _CORRECT)
         frame[:3, :3] = _turn(2, yaw) @ _turn(1, pitch) @ _turn(0, roll)
@@ -215,9 +215,10 @@ class _Reader:
             values = np.array([float(part) for part in text.split()])
         except ValueError:
             values = np.empty(0)
-        if values.shape != (3,) or not (np.abs(values) <= FURTHEST).all():
+        if values.shape != (3,) or not (np.abs(values) <= LARGEST_NUMBER).all():
             raise self._bad(
-                f"{key} of {cut(where)} is {cut(repr(text))}, but it must be three numbers of at most {FURTHEST:g}"
+                f"{key} of {cut(where)} is {cut(repr(text))}, but it must be three numbers of at most "
+                f"{LARGEST_NUMBER:g}"
             )
         return values
 

@@ -10,7 +10,7 @@ BAD_USAGE = 2
 
 
 # A sentence is no longer than this: what a file holds may be as long as it likes.
-LONGEST = 1000
+LONGEST_SENTENCE = 1000  # letters
 
 
 # No seed is larger: what it is multiplied with and added to must fit into the native code's 64 bits.
@@ -26,7 +26,7 @@ class UserError(Exception):
     """
 
     def __init__(self, message: str, exit_code: int = FAILED) -> None:
-        self.message = cut(printable(message), LONGEST)
+        self.message = cut(printable(message), LONGEST_SENTENCE)
         super().__init__(self.message)
         self.exit_code = exit_code
 

@@ -48,7 +48,7 @@ HAS_ABSTRACT_SOCKETS = sys.platform == "linux"
 
 # How a file is opened: as it is on the disk, and not where a link leads.
 _PLAIN = getattr(os, "O_BINARY", 0) | getattr(os, "O_NOFOLLOW", 0)
-_FAR = 1 << 40  # Windows keeps others from reading what is locked, and no file of ours is so long
+_FAR_BYTE = 1 << 40  # Windows keeps others from reading what is locked, and no file of ours is so long
 PSEUDO_TERMINALS = range(136, 144)  # major numbers of devices
 _PEER = struct.Struct("3i")  # struct ucred: process, user, group
 # What Linux is asked of a TCP socket and what it answers (linux/netlink.h, linux/inet_diag.h): a head of length, type,
@@ -80,7 +80,7 @@ def lock(descriptor: int, wait: bool = False) -> None:
     """
     if sys.platform == "win32":
         place = os.lseek(descriptor, 0, os.SEEK_CUR)
-        os.lseek(descriptor, _FAR, os.SEEK_SET)
+        os.lseek(descriptor, _FAR_BYTE, os.SEEK_SET)
         try:
             msvcrt.locking(descriptor, msvcrt.LK_LOCK if wait else msvcrt.LK_NBLCK, 1)
         except PermissionError as error:

@@ -28,10 +28,10 @@ from greywhale.protocol.transport import Line, PortDisturbedError, PortLostError
 
 # After this long without an answer a request is repeated, unchanged. Every request may be repeated safely.
 REPLY_WAIT_S = 0.3
-ATTEMPTS = 5
+REQUEST_ATTEMPTS = 5  # so a silent board is given up after 1.5 s
 # A stop is repeated sooner, for as long in all: damaged bytes may cost some of the repeats.
 STOP_REPEAT_S = 0.02
-STOP_ATTEMPTS = round(ATTEMPTS * REPLY_WAIT_S / STOP_REPEAT_S)
+STOP_ATTEMPTS = round(REQUEST_ATTEMPTS * REPLY_WAIT_S / STOP_REPEAT_S)
 # A bootloader to which nobody spoke has started the firmware by then.
 QUIET_S = 2.0
 # A port that says nothing is greeted for this long, counted from its opening.
@@ -40,7 +40,7 @@ PATIENCE_S = 5.0
 logger = logging.getLogger(__name__)
 
 # Requests count 1..255; the hello that a starting board sends by itself has this sequence number.
-_UNASKED = 0
+_UNASKED_SEQ = 0
 
 
 class NoAnswerError(UserError):
@@ -77,7 +77,7 @@ class Device:
         self._samples: list[schema.Sample] = []
         self._lead_progress: schema.LeadPointReply | None = None
         self._lead_refused: schema.Nack | None = None
-        self._sequence = _UNASKED
+        self._sequence = _UNASKED_SEQ
         self._heard_bytes = False
         self._started: bytes | None = None
         self._greeted = False
@@ -144,7 +144,7 @@ class Device:
         """Send a request until it is answered, and return the answer; a refusal is a UserError with its remedy."""
         self._session.check()
         try:
-            payload = self._exchange(request.TYPE, request.NAME, request.pack(), ATTEMPTS)
+            payload = self._exchange(request.TYPE, request.NAME, request.pack(), REQUEST_ATTEMPTS)
         except NoAnswerError as silence:
             raise disturbance(self._transport) or silence from None
         try:
@@ -298,11 +298,11 @@ class Device:
 
     def _send_stop(self) -> None:
         """Send a stop from any thread. Nobody waits for the answer, whose number no request has."""
-        self._transport.write(stop_message(_UNASKED))
+        self._transport.write(stop_message(_UNASKED_SEQ))
 
     def _send_clutch(self, action: str) -> None:
         """Ask the clutch to engage or disengage."""
-        self._send(schema.ClutchRequest(schema.ClutchAction[action.upper()]), _UNASKED)
+        self._send(schema.ClutchRequest(schema.ClutchAction[action.upper()]), _UNASKED_SEQ)
 
     def _send(self, request: Request[Any], sequence: int) -> None:
         self._transport.write(encode_frame(request.TYPE, sequence, request.pack()))
@@ -324,7 +324,7 @@ class Device:
         for frame in self._decoder.feed(data):
             if frame.type == schema.Sample.TYPE:
                 self._samples.append(schema.Sample.unpack(frame.payload))
-            elif frame.type == schema.HelloReply.TYPE and frame.seq == _UNASKED:
+            elif frame.type == schema.HelloReply.TYPE and frame.seq == _UNASKED_SEQ:
                 self._started = frame.payload
             elif frame.type == schema.LeadPointReply.TYPE:
                 self._lead_progress = schema.LeadPointReply.unpack(frame.payload)

@@ -14,10 +14,10 @@ from greywhale.board.stream import Received
 from greywhale.measure.swings import VIOLENT, turns_of
 from greywhale.protocol.firmware import ANGLE_LSB
 
-WINDOW_S = 0.8
-LOOK_EVERY = 40  # samples
+WINDOW_S = 0.8  # in which swings are counted
+LOOK_EVERY_SAMPLES = 40
 SETTLE_S = 0.4  # a follower may still be on its way for so long after its leader stopped
-STILL_RAD = 0.02
+STILL_RAD = 0.02  # a leader that moves less than this does not lead
 
 
 class Hunting(Exception):
@@ -40,7 +40,7 @@ class HuntingStop:
         while received.elapsed - self._last[0].elapsed > 1000 * (WINDOW_S + SETTLE_S):
             self._last.popleft()
         self._count += 1
-        if self._count % LOOK_EVERY == 0:
+        if self._count % LOOK_EVERY_SAMPLES == 0:
             self._look()
 
     def _look(self) -> None:

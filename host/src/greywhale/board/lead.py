@@ -31,9 +31,9 @@ from greywhale.protocol.firmware import (
 )
 
 # The board can keep so many points.
-ROOM = 12
+BOARD_ROOM_POINTS = 12
 # More at once would crowd samples out of the board's transmitter.
-_AT_ONCE = 2
+_MOST_AT_ONCE_POINTS = 2
 # After so many ticks without an answer, the points since the last answer are sent again.
 _PATIENCE_TICKS = 100
 # An answer that takes nothing new shows a gap. But answers to points that were sent before the repair say the same.
@@ -41,11 +41,11 @@ _RETRY_TICKS = 32
 # The largest speed from the arm's pose to a motion's first pose (rad/s).
 _APPROACH_RAD_S = 0.5
 # A follower this share of its tracking limit away from the reference slows the motion down; at the second it stops it.
-_SLOWS, _STOPS = 0.5, 0.8
+_SLOWS_LIMIT_SHARE, _STOPS_LIMIT_SHARE = 0.5, 0.8
 # The pace may change by so much from point to point: from full to none in a sixth of a second.
 _PACE_STEP = 0.1
 # If a motion takes this many times its length, the arm cannot follow it.
-_PATIENCE = 3.0
+_LONGEST_RATIO = 3.0
 
 
 @dataclass(frozen=True)
@@ -143,7 +143,9 @@ class Leading:
         if self._taken < self._sent and self._waited(tick, _PATIENCE_TICKS):
             self._sent = self._taken
             self._note_progress(tick)
-        room = min(_AT_ONCE, ROOM - max(0, self._points_left(tick)) - (self._sent - self._taken))
+        room = min(
+            _MOST_AT_ONCE_POINTS, BOARD_ROOM_POINTS - max(0, self._points_left(tick)) - (self._sent - self._taken)
+        )
         while room > 0 and self._make_points(self._sent + 1):
             if self._sent == self._taken:
                 self._note_progress(tick)
@@ -187,7 +189,7 @@ class Leading:
     def _watch(self, sample: schema.Sample) -> None:
         """Let the pace fall when a follower is far from the reference."""
         far = max(abs(a - b) for a, b in zip(sample.leader, sample.follower, strict=True)) * ANGLE_LSB / self._limit
-        self._wanted = min(1.0, max(0.0, (_STOPS - far) / (_STOPS - _SLOWS)))
+        self._wanted = min(1.0, max(0.0, (_STOPS_LIMIT_SHARE - far) / (_STOPS_LIMIT_SHARE - _SLOWS_LIMIT_SHARE)))
 
     def _make_points(self, count: int) -> bool:
         """Make points until there are `count`; False when the plan ends before."""
@@ -199,10 +201,10 @@ class Leading:
             self._pace += min(max(self._wanted - self._pace, -_PACE_STEP), _PACE_STEP)
             self.slowest = min(self.slowest, self._pace)
             self._place = min(self._place + self._pace, float(end))
-            if len(self._points) > _PATIENCE * end + 1000:
+            if len(self._points) > _LONGEST_RATIO * end + 1000:
                 raise UserError(
-                    f"{self._device.port}: the arm cannot follow this motion: it would take more than {_PATIENCE:g} "
-                    "times its length; check that every joint moves freely, or lower its range."
+                    f"{self._device.port}: the arm cannot follow this motion: it would take more than "
+                    f"{_LONGEST_RATIO:g} times its length; check that every joint moves freely, or lower its range."
                 )
             target = np.round((self._plan.at(self._place) - self._origin) / STEP_LSB).astype(np.int64)
             step = np.clip(target - self._last_point, -LONGEST_STEP, LONGEST_STEP)

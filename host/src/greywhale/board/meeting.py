@@ -23,10 +23,10 @@ from greywhale.protocol.holder import describe
 from greywhale.protocol.lines import device_of
 
 STOP, CLUTCH = "stop", ("engage", "disengage")  # what a client may say
-NAMES = 8
+NAMES_PER_PORT = 8  # any user may take some of them first
 # So many clients wait to be let in, and so many have said nothing yet.
 MOST_CLIENTS = 64
-_RETRY_S = 0.01
+_RETRY_S = 0.01  # until a full listener is tried again
 
 
 class Peer(NamedTuple):
@@ -47,7 +47,7 @@ def peer_of(connection: socket.socket) -> Peer:
 
 def names_of(device: str) -> list[str]:
     """The names at which this user's session on a device may listen."""
-    return [f"\0greywhale/{system.user()}/{device}/{number}" for number in range(NAMES)]
+    return [f"\0greywhale/{system.user()}/{device}/{number}" for number in range(NAMES_PER_PORT)]
 
 
 def listen(port: str, device: str) -> socket.socket:

@@ -18,10 +18,10 @@ from greywhale.protocol.table import ParameterTable
 
 FOLLOWERS = range(4, 8)
 POTS = tuple(f"{side}{joint}" for side in ("leader", "follower") for joint in range(4))
-LOOKS = 100  # samples, of a millisecond each
-FULL_SCALE = 1023
+LOOK_SAMPLES = 100  # of a millisecond each
+FULL_SCALE = 1023  # counts of the 10-bit converter
 _ANGLE_SHIFT = 13  # angle = ((count14 - zero) * scale) >> 13
-COUNT14 = 16  # in a count of the converter
+COUNT14_PER_COUNT = 16  # a reading is the sum of 4 conversions, times 4: 14 bits
 
 
 @dataclass(frozen=True)
@@ -59,7 +59,7 @@ def read_pots(device: Device, table: ParameterTable) -> PotReadings:
 
     Telemetry is off afterwards.
     """
-    counts = np.rint(read_counts(device, table, LOOKS))
+    counts = np.rint(read_counts(device, table, LOOK_SAMPLES))
     return PotReadings(np.clip(counts, 0, FULL_SCALE).astype(np.int64), table["rail_counts"], pots_there(table))
 
 
@@ -89,7 +89,7 @@ def counts_of(samples: Iterable[schema.Sample], table: ParameterTable) -> NDArra
     zeros = np.array([table[f"{pot}.zero"] for pot in POTS], dtype=float)
     angles = np.array([(*sample.leader, *sample.follower) for sample in samples], dtype=float).reshape(-1, len(POTS))
     there = scales != 0.0
-    counts: NDArray[np.float64] = (angles * 2**_ANGLE_SHIFT / np.where(there, scales, 1.0) + zeros) / COUNT14
+    counts: NDArray[np.float64] = (angles * 2**_ANGLE_SHIFT / np.where(there, scales, 1.0) + zeros) / COUNT14_PER_COUNT
     return np.where(there, counts, FULL_SCALE / 2)
 
 

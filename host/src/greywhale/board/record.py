@@ -35,20 +35,20 @@ LEASE_MS = 500
 # A computer that also searches may stand still for longer than one that only records.
 BUSY_LEASE_MS = 1000
 # With rarer samples the lease could not be renewed in time from the samples alone.
-_LONGEST_EVERY_ENABLED = 100
-_LONGEST_EVERY = 65535
+_LONGEST_EVERY_ENABLED_TICKS = 100
+_LONGEST_EVERY_TICKS = 65535  # 16 bits of the request
 # With rarer samples a host that leads could not send its points in time.
-_LONGEST_EVERY_LED = 4
-_SHORTEST_S = 0.01
-_LONGEST_S = 86400.0
+_LONGEST_EVERY_LED_TICKS = 4
+_SHORTEST_S = 0.01  # of a recording
+_LONGEST_S = 86400.0  # a day
 # After a motion the log goes on for this long.
 REST_S = 0.3
 # Within this many ticks of enable the samples must show that the motors started.
 _ENABLE_TICKS = 1000
-_ROWS_PER_REPORT = 50
-_POSE_SAMPLES = 21
+_ROWS_PER_REPORT = 50  # rows between two reports of progress
+_POSE_SAMPLES = 21  # whose median is the pose
 # A recording whose end was lost is not what was asked for: more than this share of it, and than so many samples.
-_MOST_LOST_SHARE, _MOST_LOST = 0.1, 10
+_MOST_LOST_SHARE, _MOST_LOST_SAMPLES = 0.1, 10
 _MOVING = (schema.State.SOFT_START, schema.State.FOLLOWING)
 _VOLT = schema.Sample.LSB["voltage"]
 
@@ -167,10 +167,10 @@ def record_led(
 
 def check_every_led(every: int) -> None:
     """Refuse samples that are too rare to lead by."""
-    if not 1 <= every <= _LONGEST_EVERY_LED:
+    if not 1 <= every <= _LONGEST_EVERY_LED_TICKS:
         raise BadUsage(
             f"one sample every {every} ticks is out of range; while this host leads it must be 1 to "
-            f"{_LONGEST_EVERY_LED}."
+            f"{_LONGEST_EVERY_LED_TICKS}."
         )
 
 
@@ -187,7 +187,7 @@ def check_request(seconds: float, every: int, enable: bool) -> None:
     """Refuse a length, or samples so rare, that no board can record."""
     if not _SHORTEST_S <= seconds <= _LONGEST_S:
         raise BadUsage(f"the duration is {seconds:g} s; it must be {_SHORTEST_S:g} to {_LONGEST_S:g} s.")
-    longest = _LONGEST_EVERY_ENABLED if enable else _LONGEST_EVERY
+    longest = _LONGEST_EVERY_ENABLED_TICKS if enable else _LONGEST_EVERY_TICKS
     if not 1 <= every <= longest:
         motors = " while the motors are on" if enable else ""
         raise BadUsage(f"one sample every {every} ticks is out of range; it must be 1 to {longest}{motors}.")
@@ -261,7 +261,7 @@ def _end(device: Device, log: LogWriter, one: Received, length: int) -> None:
     every = log.origin.every_ticks or 1
     lost = min(one.lost, max(0, length - 1 - round(1000 * log.last_s)) // every)
     log.drop(lost)
-    if lost > _MOST_LOST and lost * every > _MOST_LOST_SHARE * length:
+    if lost > _MOST_LOST_SAMPLES and lost * every > _MOST_LOST_SHARE * length:
         raise UserError(
             f"{device.port}: the end of the recording was lost: after {log.last_s:g} of {length / 1000:g} s no sample "
             f"came for {(one.lost + 1) * every / 1000:g} s by the board's clock; check the cable and whether this "

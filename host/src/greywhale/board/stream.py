@@ -15,12 +15,12 @@ from greywhale.board.device import Device
 from greywhale.board.refusal import fault_text, lower_first
 from greywhale.protocol import schema
 
-_TICKS = 1 << 32
+_TICK_COUNTS = 1 << 32  # after so many the board counts its ticks from 0 again
 # As long as the longest recording: no board that was heard all the time is silent for so many ticks.
-_LONGEST_STEP = 86_400_000
+_LONGEST_STEP_TICKS = 86_400_000
 # No sample for this long, and at least five sample periods, means that something is wrong.
 _SILENCE_S = 2.0
-_RENEWALS_PER_LEASE = 4
+_RENEWALS_PER_LEASE = 4  # so three may be lost
 # A host that looks at the port more seldom was stopped itself (Ctrl-Z, a sleeping laptop).
 _PAUSE_S = 1.0
 
@@ -69,19 +69,19 @@ def _samples(device: Device, every: int) -> Iterator[Received]:
         if samples:
             newest = samples[-1].tick
             renewed = samples[0].tick if renewed is None else renewed
-            if device.lease_ms and (newest - renewed) % _TICKS >= device.lease_ms // _RENEWALS_PER_LEASE:
+            if device.lease_ms and (newest - renewed) % _TICK_COUNTS >= device.lease_ms // _RENEWALS_PER_LEASE:
                 device.renew()
                 renewed = newest
         for sample in samples:
-            step = every if last is None else (sample.tick - last) % _TICKS
+            step = every if last is None else (sample.tick - last) % _TICK_COUNTS
             if step == 0:
                 continue  # the same sample again says nothing new
             heard = now
-            if step > _TICKS // 2:
+            if step > _TICK_COUNTS // 2:
                 raise UserError(
                     f"{device.port}: the board's clock went backwards: it restarted in the middle; try again."
                 )
-            if step > _LONGEST_STEP:
+            if step > _LONGEST_STEP_TICKS:
                 raise UserError(
                     f"{device.port}: the board's clock jumped by {step / 1000:.3f} s between two samples, so the times "
                     "of what follows are not known; reset the board and try again."

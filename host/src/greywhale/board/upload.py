@@ -21,7 +21,7 @@ from greywhale.protocol.table import ParameterTable
 
 # A whole set takes 0.7 s to write into the EEPROM of an Arduino.
 SAVE_WAIT_S = 10.0
-_POLL_S = 0.02
+_POLL_S = 0.02  # between two looks whether the board has done it
 
 
 class UploadFacts(TypedDict):

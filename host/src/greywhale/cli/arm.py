@@ -21,7 +21,7 @@ from greywhale.cli.output import FILE, json_option, option, overwrite_option, sh
 from greywhale.files.model import arm_toml
 from greywhale.files.outputs import require_new
 
-SUPPLY_V = (1.0, 60.0)
+SUPPLY_V = (1.0, 60.0)  # of motors that an Arduino drives
 
 
 class ArmImportAnswer(Lifting):

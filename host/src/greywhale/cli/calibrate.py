@@ -26,8 +26,8 @@ from greywhale.protocol.firmware import JOINTS
 from greywhale.protocol.joints import parse, unused
 from greywhale.protocol.ports import choose_port
 
-TRACK_DEG = (180.0, 450.0)
-FARTHEST_DEG = 359.0
+TRACK_DEG = (180.0, 450.0)  # of any potentiometer of one turn, and a little beyond
+FARTHEST_DEG = 359.0  # of a pose
 
 
 class MotorFacts(TypedDict):

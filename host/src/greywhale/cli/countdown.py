@@ -16,8 +16,8 @@ from greywhale.base.errors import BadUsage
 from greywhale.cli import output
 from greywhale.protocol.ports import is_bench
 
-SECONDS = 3
-SECOND_S = 1.0
+COUNTDOWN_SECONDS = 3  # to step back or press Ctrl-C
+SECOND_S = 1.0  # shorter in tests
 yes_option = click.option("--yes", "-y", is_flag=True, help="Move the arm without the countdown; scripts need this.")
 
 
@@ -37,7 +37,7 @@ def prepare_motion(port: str, yes: bool) -> Callable[[], None]:
 
 def count_down(wait: Callable[[float], None] = time.sleep) -> None:
     try:
-        for left in range(SECONDS, 0, -1):
+        for left in range(COUNTDOWN_SECONDS, 0, -1):
             click.echo(f"\rThe arm moves by itself in {left} s; Ctrl-C keeps it still. ", nl=False, err=True)
             wait(SECOND_S)
     finally:
@@ -49,7 +49,7 @@ def warn_page(wait: Callable[[float], None] = time.sleep) -> None:
     if output.watcher is None:
         return
     try:
-        for left in range(SECONDS, 0, -1):
+        for left in range(COUNTDOWN_SECONDS, 0, -1):
             output.watcher.counts(left)
             wait(SECOND_S)
     finally:

@@ -20,11 +20,11 @@ from rich.text import Text
 
 from greywhale.base.errors import printable
 
-EVERY_S = 30.0  # between two lines about one step
-LOOK_EVERY_S = 1.0
-FRAMES_HZ = 4.0
-LONGEST_BAR = 24  # columns
-BESIDE_BAR = 33  # columns for the share and the times
+LINE_EVERY_S = 30.0  # between two lines about one step
+LOOK_EVERY_S = 1.0  # whether a line is due
+FRAMES_HZ = 4.0  # of a terminal's bar
+LONGEST_BAR_COLUMNS = 24
+BESIDE_BAR_COLUMNS = 33  # for the share and the times
 Clock = Callable[[], float]
 
 
@@ -80,7 +80,7 @@ class Frame:
         if step is None:
             return
         yield Text(step.what)
-        length = max(1, min(LONGEST_BAR, options.max_width - BESIDE_BAR))
+        length = max(1, min(LONGEST_BAR_COLUMNS, options.max_width - BESIDE_BAR_COLUMNS))
         state = Text(step.state(self._running.clock()), no_wrap=True, overflow="ellipsis")
         row = Table.grid(padding=(0, 1))
         row.add_row(ProgressBar(total=1.0, completed=step.fraction, width=length), state)
@@ -106,7 +106,7 @@ class Lines:
         """Say how far the step is, if nothing was said for so long."""
         with self._lock:
             step, now_s = self._running.step, self._running.clock()
-            if step is not None and now_s - self._said_s >= EVERY_S:
+            if step is not None and now_s - self._said_s >= LINE_EVERY_S:
                 self._tell(f"{step.what}: {step.state(now_s)}")
 
     def _tell(self, text: str) -> None:

@@ -12,9 +12,9 @@ from greywhale.board.doctor.examine import LINK_S
 from greywhale.cli.output import FILE, OnPort, json_option, option, port_option, progress, show
 from greywhale.protocol.ports import choose_port
 
-LONGEST_S = 3600.0
-SUPPLY_V = (1.0, 60.0)
-INDENT = 21  # of what is said, behind verdict and check
+LONGEST_S = 3600.0  # of the look at the link
+SUPPLY_V = (1.0, 60.0)  # of motors that an Arduino drives
+INDENT_COLUMNS = 21  # of what is said, behind verdict and check
 
 
 class DoctorAnswer(OnPort):
@@ -58,13 +58,13 @@ def command(
         findings = examine(chosen, params, seconds, supply, image, hex_file, report)
     verdict = worst(findings)
     answer: DoctorAnswer = {"port": chosen, "verdict": verdict, "findings": findings}
-    show(as_json, answer, "\n".join([*map(_line, findings), "", _summary(findings)]), hang=INDENT)
+    show(as_json, answer, "\n".join([*map(_line, findings), "", _summary(findings)]), hang=INDENT_COLUMNS)
     context.exit(int(verdict is Verdict.BAD))
 
 
 def _line(one: Finding) -> str:
     head = f"{one.verdict.value:<5} {one.check:<14} "
-    remedy = f"\n{'':<{INDENT}}-> {one.remedy}" if one.remedy else ""
+    remedy = f"\n{'':<{INDENT_COLUMNS}}-> {one.remedy}" if one.remedy else ""
     return f"{head}{one.says}{remedy}"
 
 

@@ -19,13 +19,13 @@ from typing import Annotated, NoReturn, TypedDict
 import click
 
 from greywhale.base import system
-from greywhale.base.errors import BAD_USAGE, FAILED, LONGEST, BadUsage, UserError, cut, os_reason, printable
+from greywhale.base.errors import BAD_USAGE, FAILED, LONGEST_SENTENCE, BadUsage, UserError, cut, os_reason, printable
 from greywhale.cli import tracing
 from greywhale.cli.output import json_of
 from greywhale.cli.verbs import greywhale
 from greywhale.cli.wrapping import fit
 
-INTERRUPTED = 130
+INTERRUPTED = 130  # the exit code after Ctrl-C, as shells have it: 128 + SIGINT
 logger = logging.getLogger(__name__)
 
 
@@ -127,7 +127,7 @@ def _terminated(number: int, frame: FrameType | None) -> None:
 
 
 def _failed(message: str, code: int, as_json: bool) -> int:
-    message = cut(message, LONGEST)
+    message = cut(message, LONGEST_SENTENCE)
     logger.info("failed: %s", printable(message))
     logger.debug("where:", exc_info=True)
     if as_json:

@@ -18,7 +18,7 @@ from greywhale.cli.output import OnPort, json_option, option, port_option, show
 from greywhale.protocol import schema
 from greywhale.protocol.ports import choose_port
 
-BESIDE = 15  # columns: where a row's value begins
+VALUE_COLUMN = 15  # where a row's value begins
 
 
 class PotFacts(TypedDict):
@@ -78,7 +78,7 @@ def command(watch: bool, seconds: float | None, port: str | None, as_json: bool)
     with Device(choose_port(port), restart=False) as device:
         hello, status = device.hello, device.status()
         pots = read_pots(device, read_parameters(device)) if status.state in _MOTORS_OFF else None
-    show(as_json, _facts(device, hello, status, pots), _text(device, hello, status, pots), hang=BESIDE)
+    show(as_json, _facts(device, hello, status, pots), _text(device, hello, status, pots), hang=VALUE_COLUMN)
 
 
 def _watch(port: str | None, seconds: float | None) -> None:
@@ -154,7 +154,7 @@ def _text(device: Device, hello: schema.HelloReply, status: schema.StatusReply, 
         ("saves", f"{status.saves:,}; the EEPROM is made for {EEPROM_WRITES:,}"),
         *(("pots", line) for line in _tell_pots(pots)),
     ]
-    return "\n".join(f"{name:<{BESIDE}}{value}" for name, value in rows)
+    return "\n".join(f"{name:<{VALUE_COLUMN}}{value}" for name, value in rows)
 
 
 def _source(hello: schema.HelloReply, status: schema.StatusReply) -> str:

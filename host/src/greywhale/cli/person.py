@@ -23,7 +23,7 @@ WORDS = {
     "": PersonAnswer.DONE,
 }
 WORDS |= {word[:1]: answer for word, answer in WORDS.items()}
-LOOK_AGAIN_S = 0.5
+LOOK_AGAIN_S = 0.5  # until it looks again if the terminal is this program's
 NO = ("n", "no", "q", "quit")
 
 

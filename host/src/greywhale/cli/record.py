@@ -38,7 +38,7 @@ from greywhale.protocol.ports import choose_port
 if TYPE_CHECKING:
     from greywhale.identify.excite import Design
 
-RECORDED_S = 10.0
+USUAL_RECORDING_S = 10.0  # without --seconds
 # Options that mean nothing without --excite.
 _OF_EXCITE = {
     "arm_file": "--arm",
@@ -148,7 +148,7 @@ def command(
     if not excite:
         require_new(overwrite, out)
         _refuse_without_excite(arm_file=arm_file, ranges=ranges, save_motion=save_motion, seed=seed, budget=budget)
-        chosen, length = choose_port(port), RECORDED_S if seconds is None else seconds
+        chosen, length = choose_port(port), USUAL_RECORDING_S if seconds is None else seconds
         if reconnect:
             with progress() as report:
                 recorded = record_through_losses(chosen, out, length, every, report)

@@ -23,7 +23,7 @@ from greywhale.protocol.ports import choose_port
 
 # The paper's motions by name, and the share of the fastest that a board can be led at which their edges use.
 MOTIONS: dict[str, Callable[..., Trajectory]] = {"steps": steps, "multi-steps": multi_steps}
-SHARE = 0.9
+FASTEST_LED_SHARE = 0.9
 
 
 class ReplayAnswer(OnPort, LedRecordingFacts):
@@ -53,7 +53,7 @@ def command(motion: Path, out: Path, every: int, overwrite: bool, yes: bool, por
     require_new(overwrite, out)
     made = MOTIONS.get(str(motion))
     with suggesting(motion, MOTIONS):
-        trajectory = load_leader(motion) if made is None else made(fastest_rad_s=SHARE * FASTEST_LED_RAD_S)
+        trajectory = load_leader(motion) if made is None else made(fastest_rad_s=FASTEST_LED_SHARE * FASTEST_LED_RAD_S)
     warn(trajectory.remarks)  # while Ctrl-C still leaves the motors off
     chosen = choose_port(port)
     count_down = prepare_motion(chosen, yes)

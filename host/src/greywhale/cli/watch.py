@@ -28,9 +28,9 @@ from greywhale.protocol.firmware import ANGLE_LSB, JOINTS
 from greywhale.protocol.joints import ALL, Joints
 from greywhale.protocol.table import ParameterTable
 
-EVERY = 50  # ticks between two samples
-WIDTH = 80
-MOST_COMPLAINTS = 2
+SAMPLE_EVERY_TICKS = 50  # 20 samples a second
+WIDTH_COLUMNS = 80  # of the smallest usual terminal
+MOST_COMPLAINTS = 2  # shown; the others are counted
 _REFRESH_S = 0.1  # of the table, by this machine's clock
 _LINE_TICKS = 1000  # between two lines, by the board's
 _GROUPS = ("leader", "follower", "error", "voltage")
@@ -83,7 +83,7 @@ def watch(device: Device, table: ParameterTable, seconds: float | None = None) -
 def looks(device: Device, table: ParameterTable) -> Iterator[Look]:
     """Yield a look at the board's newest sample, again and again, without end."""
     fault, fault_words, lost = schema.Fault.NONE, "", 0
-    for one in stream(device, EVERY):
+    for one in stream(device, SAMPLE_EVERY_TICKS):
         lost += one.lost
         if one.sample.fault is not fault:
             fault = one.sample.fault
@@ -98,7 +98,7 @@ def as_table(look: Look) -> str:
     lost = f", {look.lost} samples lost" if look.lost else ""
     board = f"{look.port}, state {look.sample.state.key}, {look.sample.tick / 1000:.1f} s since its start{lost}"
     lines = [
-        *textwrap.wrap(board, WIDTH),
+        *textwrap.wrap(board, WIDTH_COLUMNS),
         "",
         f"{'':8}{'leader':>17}{'follower':>17}{'error':>10}{'voltage':>10}",
         f"{'':8}{'rad':>9}{'counts':>8}{'rad':>9}{'counts':>8}{'rad':>10}{'V':>10}",
@@ -116,7 +116,7 @@ def as_table(look: Look) -> str:
     if len(look.complaints) > MOST_COMPLAINTS:
         sentences.append(f"{len(look.complaints) - MOST_COMPLAINTS} more potentiometers are at a rail.")
     sentences.append("Ctrl-C ends this.")
-    return "\n".join([*lines, "", *(line for sentence in sentences for line in textwrap.wrap(sentence, WIDTH))])
+    return "\n".join([*lines, "", *(line for sentence in sentences for line in textwrap.wrap(sentence, WIDTH_COLUMNS))])
 
 
 def as_line(look: Look) -> str:

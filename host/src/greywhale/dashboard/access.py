@@ -12,24 +12,24 @@ import threading
 import time
 from collections.abc import Callable
 
-LASTS_S = 600.0  # to paste an address, also through a tunnel from another machine
-MOST_TICKETS = 16  # unused
+TICKET_LASTS_S = 600.0  # to paste an address, also through a tunnel from another machine
+MOST_TICKETS = 16  # kept unused; older ones are forgotten
 ANEW = "press Enter in the terminal of `greywhale dashboard`, and open the address that it prints then."
-_BYTES = 24
+_SECRET_BYTES = 24  # of a token or a ticket: nobody guesses 192 bits
 
 
 class Access:
     """That of the server at this port of the loopback. Any thread may call it."""
 
     def __init__(self, port: int, clock: Callable[[], float] = time.monotonic) -> None:
-        self.token = secrets.token_urlsafe(_BYTES)
+        self.token = secrets.token_urlsafe(_SECRET_BYTES)
         self._port, self._clock = port, clock
         self._tickets: dict[str, float] = {}  # and when they were made
         self._lock = threading.Lock()
 
     def address(self) -> str:
         """One to open in a browser, with a new ticket."""
-        ticket = secrets.token_urlsafe(_BYTES)
+        ticket = secrets.token_urlsafe(_SECRET_BYTES)
         with self._lock:
             self._tickets[ticket] = self._clock()
             for oldest in list(self._tickets)[:-MOST_TICKETS]:
@@ -40,6 +40,6 @@ class Access:
         """The token for a ticket, which is void from now on; None for one that is void."""
         with self._lock:
             known = next((one for one in self._tickets if hmac.compare_digest(one.encode(), ticket.encode())), None)
-            if known is None or self._clock() > self._tickets.pop(known) + LASTS_S:
+            if known is None or self._clock() > self._tickets.pop(known) + TICKET_LASTS_S:
                 return None
         return self.token

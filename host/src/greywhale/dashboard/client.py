@@ -14,7 +14,7 @@ from greywhale.protocol import schema
 from greywhale.protocol.frames import Frame, FrameDecoder
 
 STARTS = {schema.EnableRequest.TYPE, schema.LeadRequest.TYPE}
-_NUMBERS = 255  # of requests, which count 1..255
+_REQUEST_NUMBERS = 255  # of requests, which count 1..255
 
 
 class Client:
@@ -45,7 +45,7 @@ class Client:
 
     def note(self, frame: Frame) -> None:
         """A page asks for something; what it sends again has the number of before."""
-        if self._newest is None or 0 < (frame.seq - self._newest) % _NUMBERS <= _NUMBERS // 2:
+        if self._newest is None or 0 < (frame.seq - self._newest) % _REQUEST_NUMBERS <= _REQUEST_NUMBERS // 2:
             self._newest = frame.seq
             if frame.type in STARTS:
                 self._start = frame.seq

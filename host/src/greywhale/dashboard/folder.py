@@ -13,7 +13,7 @@ from greywhale.base.formats import toml_file
 from greywhale.base.formats.kinds import kind_of
 from greywhale.files.log.layout import TITLE
 
-MOST_FILES = 1000
+MOST_FILES = 1000  # that are looked at, in and below the folder
 # Larger tables are nobody's that a page would name.
 _LARGEST_TABLE_BYTES = 1 << 20
 

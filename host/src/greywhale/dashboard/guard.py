@@ -20,12 +20,12 @@ from greywhale.dashboard.door import Door
 SUBPROTOCOL = "greywhale"
 TOKEN_PREFIX = "token."
 ENTRY = "/enter"  # where a ticket is exchanged for the token
-MOST_BODY_BYTES = 1 << 20
+MOST_BODY_BYTES = 1 << 20  # of a request: the words of a verb take 100 kB at most
 # Of all who have the token. A page asks for some ten things at its start, and then for one at a time.
-REQUESTS_A_SECOND, AT_ONCE = 100.0, 300.0
+REQUESTS_A_SECOND, REQUESTS_AT_ONCE = 100.0, 300.0
 # Of all others. Whoever comes too early waits, for a page that loads has no token yet.
 STRANGERS_A_SECOND, STRANGERS_AT_ONCE = 100.0, 100.0
-_LOOK_AGAIN_S = 0.05
+_LOOK_AGAIN_S = 0.05  # until a stranger that came too early is looked at again
 
 Refusal = tuple[int, str]
 POLICY = "; ".join(
@@ -61,7 +61,7 @@ class Guard:
         self._origins = {f"http://{host}" for host in self._hosts}
         self._is_public = is_public
         self.door = door
-        self._owners = Bucket(REQUESTS_A_SECOND, AT_ONCE)
+        self._owners = Bucket(REQUESTS_A_SECOND, REQUESTS_AT_ONCE)
         self._strangers = Bucket(STRANGERS_A_SECOND, STRANGERS_AT_ONCE)
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:

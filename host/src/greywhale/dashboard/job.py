@@ -27,11 +27,11 @@ from greywhale.dashboard.lending import MOST_SAMPLES, LentEnd
 from greywhale.dashboard.outbox import Outbox
 from greywhale.dashboard.relay import Relay, Wish
 
-INTERRUPTED = 130
+INTERRUPTED = 130  # the exit code of a verb that Ctrl-C ended
 # A verb that was interrupted stops motors and writes its files; one that does not end by then hangs.
 END_WAIT_S = 15.0
-MOST_SAID = 200
-_PIECE = 65536
+MOST_SAID_LINES = 200  # kept of a verb's output, the newest
+_PIECE_BYTES = 65536  # of a pipe, read at once
 
 
 class Facts(TypedDict):
@@ -183,9 +183,9 @@ class Job:
             while open_pipes:
                 for key, events in selector.select(self._patience_s()):
                     if key.fd == self._wake_out.fileno():
-                        self._wake_out.recv(_PIECE)
+                        self._wake_out.recv(_PIECE_BYTES)
                     elif key.fd in open_pipes:
-                        data = os.read(key.fd, _PIECE)
+                        data = os.read(key.fd, _PIECE_BYTES)
                         if data:
                             open_pipes[key.fd](data)
                         else:
@@ -209,7 +209,7 @@ class Job:
 
     def _take_said(self, data: bytes) -> None:
         said = [printable(line) for line in self._lines("said", data)]
-        self.facts["said"] = [*self.facts["said"], *said][-MOST_SAID:]
+        self.facts["said"] = [*self.facts["said"], *said][-MOST_SAID_LINES:]
         self._changed(self)
 
     def _take_told(self, data: bytes) -> None:

@@ -14,8 +14,8 @@ from greywhale.protocol import schema
 # A page may be busy for some tenths of a second, and is not gone. One that is closed is noticed at once.
 SILENCE_S = 0.5
 LEASE_MS = 250
-RENEW_S = 0.06
-QUIET_S = 0.1  # a board that sent no sample for so long may have restarted: its lease is not renewed
+RENEW_S = 0.06  # so three renewals may be lost
+NO_RENEWAL_S = 0.1  # a board that sent no sample for so long may have restarted: its lease is not renewed
 _AT_REST = (schema.State.DISABLED, schema.State.FAULT)
 
 
@@ -60,7 +60,7 @@ class Lease:
             return Due.NOTHING
         if now_s > self.page.seen_s + SILENCE_S:
             return Due.STOP
-        if now_s >= self._renewed_s + RENEW_S and now_s <= heard_s + QUIET_S:
+        if now_s >= self._renewed_s + RENEW_S and now_s <= heard_s + NO_RENEWAL_S:
             self._renewed_s = now_s
             return Due.RENEWAL
         return Due.NOTHING

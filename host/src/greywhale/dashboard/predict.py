@@ -17,16 +17,16 @@ from greywhale.loop.leader_motions import RATE_HZ, minimum_jerk, multi_steps
 from greywhale.protocol.firmware import JOINTS, TICK_S, pwm_steps
 from greywhale.protocol.table import ParameterTable
 
-STEP_RAD, REACH_RAD, REACH_S = 0.5, 1.0, 0.8
-BEFORE_S, AFTER_S = 0.2, 1.3
+STEP_RAD, REACH_RAD, REACH_S = 0.5, 1.0, 0.8  # the motions that are predicted, of every joint
+BEFORE_S, AFTER_S = 0.2, 1.3  # rest before the motion, and time to settle
 # Ticks between two rows of the answer.
-EVERY = 5
+ROW_EVERY_TICKS = 5
 # What a board knows of its arms' potentiometers and wires is none of the model's.
 _CALIBRATION = ("leader", "follower")
 
 
 class Motion(TypedDict):
-    """A predicted motion: a row each `EVERY` ticks, a column a joint; `mse` in rad2 over the whole motion."""
+    """A predicted motion: a row each `ROW_EVERY_TICKS` ticks, a column a joint; `mse` in rad2 over the whole motion."""
 
     time_s: list[float]
     leader: list[list[float]]  # rad
@@ -51,11 +51,11 @@ def predict(arm: ArmParameters, table: ParameterTable) -> Prediction:
 
 def _follow(arm: ArmParameters, table: ParameterTable, leader: Trajectory) -> Motion:
     experiment = Experiment(leader, arm, table=table, noise=False, wait_s=BEFORE_S, soft_start=False)
-    result = experiment.run(controllers_of(table)[None], plant_row(arm)[None], every=EVERY, threads=1)
+    result = experiment.run(controllers_of(table)[None], plant_row(arm)[None], every=ROW_EVERY_TICKS, threads=1)
     volts = table.supply_v / np.array(pwm_steps(table.board))
     return {
-        "time_s": _rounded(np.arange(len(result.time_s)) * EVERY * TICK_S),
-        "leader": _rounded(experiment.leader[::EVERY]),
+        "time_s": _rounded(np.arange(len(result.time_s)) * ROW_EVERY_TICKS * TICK_S),
+        "leader": _rounded(experiment.leader[::ROW_EVERY_TICKS]),
         "follower": _rounded(np.nan_to_num(result.angles[0].astype(np.float64), nan=10.0)),
         "voltage": _rounded(result.duties[0] * volts),
         "mse": [float(f"{one:.4g}") for one in result.mse[0]],

@@ -19,7 +19,7 @@ from starlette.routing import BaseRoute, Mount, Route, WebSocketRoute
 from starlette.staticfiles import StaticFiles
 
 from greywhale.base.errors import BadUsage, UserError
-from greywhale.dashboard.access import ANEW, LASTS_S, Access
+from greywhale.dashboard.access import ANEW, TICKET_LASTS_S, Access
 from greywhale.dashboard.answers import Answers
 from greywhale.dashboard.connections import Server
 from greywhale.dashboard.door import Door
@@ -29,7 +29,7 @@ from greywhale.dashboard.sockets import serve_board, serve_host
 PAGE = Path(__file__).resolve().parent / "page"
 # Frames of the link are 50 bytes; a page sends some at once.
 MOST_MESSAGE_BYTES = 1 << 16
-_END_WAIT_S = 1
+_END_WAIT_S = 1  # for open requests, at the server's end
 _BYTES = "application/octet-stream"
 PAGE_ID = "page id"  # among what is asked: which page asks, by the name that its board's socket told it
 
@@ -113,7 +113,7 @@ def _entry(access: Access) -> Callable[[Request], Awaitable[Response]]:
         if token is not None:
             return JSONResponse({"token": token})
         return PlainTextResponse(
-            f"This address was used before, or is older than {LASTS_S / 60:.0f} minutes; {ANEW}", 403
+            f"This address was used before, or is older than {TICKET_LASTS_S / 60:.0f} minutes; {ANEW}", 403
         )
 
     return enter

@@ -20,8 +20,8 @@ from greywhale.dashboard.relay import Relay
 # Samples of so long go out in one message.
 BATCH_S = 0.02
 # A page that drives sends a sign of life every 100 ms and, while it leads, a point every 16 ms.
-MESSAGES_A_SECOND, AT_ONCE = 400.0, 2000.0
-_TOO_MANY, _NOT_UNDERSTOOD = 1008, 1003
+MESSAGES_A_SECOND, MESSAGES_AT_ONCE = 400.0, 2000.0
+_TOO_MANY, _NOT_UNDERSTOOD = 1008, 1003  # codes of RFC 6455 to close a WebSocket with
 
 
 class Waiting:
@@ -79,7 +79,7 @@ async def _send(socket: WebSocket, outbox: Outbox, waiting: Waiting) -> None:
 
 
 async def _receive(socket: WebSocket, client: Client, relay: Relay) -> None:
-    bucket = Bucket(MESSAGES_A_SECOND, AT_ONCE)
+    bucket = Bucket(MESSAGES_A_SECOND, MESSAGES_AT_ONCE)
     wishes: dict[str, Callable[[Client], None]] = {
         "drive": relay.drive,
         "release": relay.release,

@@ -8,8 +8,8 @@ from typing import Any, Literal, TypedDict
 from greywhale.base.errors import BadUsage, cut
 from greywhale.dashboard.folder import Folder
 
-LONGEST_VALUE = 1000
-MOST_VALUES = 100
+LONGEST_VALUE_LETTERS = 1000  # a path is shorter
+MOST_VALUES = 100  # of one argument, such as the logs of `evaluate`
 
 
 class ArgumentFacts(TypedDict):
@@ -69,7 +69,7 @@ def _texts(argument: ArgumentFacts, value: object, folder: Folder) -> Iterator[s
     for one in values:
         text = str(one)
         fits = isinstance(one, str | int | float) and not isinstance(one, bool)
-        if not fits or not text or not text.isprintable() or len(text) > LONGEST_VALUE:
+        if not fits or not text or not text.isprintable() or len(text) > LONGEST_VALUE_LETTERS:
             raise BadUsage(f"{argument['name']} is {cut(repr(one))}, but it must be text or a number.")
         if isinstance(one, str):
             folder.argument(text)

@@ -26,13 +26,13 @@ from greywhale.protocol.firmware import JOINTS
 from greywhale.protocol.table import CONTROLLER_COLUMNS, ParameterTable
 
 # No flank of a fuzzy set may be narrower than this.
-NARROWEST = 0.01
+NARROWEST_FLANK = 0.01
 GAINS = ("kp", "kd", "ki", "ku")
 OF_A_JOINT = ("speed_per_volt", "time_constant", "breakaway_volts")
 OF_THE_ARM = ("gravity_1", "gravity_12", "gravity_2")
 # Corners left and right of zero.
-Left = Annotated[float, Field(ge=-1.0, le=-NARROWEST)]
-Right = Annotated[float, Field(ge=NARROWEST, le=1.0)]
+Left = Annotated[float, Field(ge=-1.0, le=-NARROWEST_FLANK)]
+Right = Annotated[float, Field(ge=NARROWEST_FLANK, le=1.0)]
 _STALL = schema.PARAMETER_BY_NAME["stall_volts"]
 
 

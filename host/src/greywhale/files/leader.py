@@ -21,7 +21,7 @@ from greywhale.files.log.units import doubt_speed, perhaps_degrees
 from greywhale.files.trajectory import POT_RANGE_RAD, Trajectory
 from greywhale.protocol.firmware import JOINTS
 
-LONGEST_S = 3600.0
+LONGEST_S = 3600.0  # of a motion; a longer one has its times in another unit
 # Far beyond a hand (some 30 rad/s), but a step of `multi_steps` over the whole range, 40 ms long, stays below it.
 FASTEST_RAD_S = 250.0
 

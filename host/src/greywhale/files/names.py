@@ -9,13 +9,13 @@ from pathlib import Path
 
 from greywhale.base.errors import UserError
 
-_MOST = 3
-_LONGEST = 60  # nobody's slip is longer, and the search takes a time that grows with it
+_MOST_SUGGESTED = 3
+_LONGEST_NAME = 60  # letters: nobody's slip is longer, and the search takes a time that grows with it
 
 
 def did_you_mean(name: str, names: Iterable[str]) -> str:
     """A question to end a sentence with, " Did you mean joint0.kp?"; "" where no name is like it."""
-    close = get_close_matches(name, list(names), _MOST) if len(name) <= _LONGEST else []
+    close = get_close_matches(name, list(names), _MOST_SUGGESTED) if len(name) <= _LONGEST_NAME else []
     return f" Did you mean {' or '.join(close)}?" if close else ""
 
 

@@ -11,6 +11,7 @@ from greywhale import _native
 from greywhale.files.controller import JointController, load
 from greywhale.protocol.schema import Refusal
 
+# Raw numbers of the firmware for 1: of a corner of a set, of a factor, and of a rad.
 SET_UNIT = 1 << 14
 GAIN_UNIT = 1 << 16
 ANGLE_UNIT = 1 << 12

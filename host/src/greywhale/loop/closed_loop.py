@@ -21,8 +21,8 @@ from greywhale.protocol.table import ParameterTable
 
 Counts = npt.NDArray[np.int16]
 
-LATEST_CHAIN = 7000  # cycles: a chain takes 12,944 and must end before the next tick
-LONGEST_DELAY = 1000  # ticks
+LATEST_CHAIN_CYCLES = 7000  # cycles: a chain takes 12,944 and must end before the next tick
+LONGEST_DELAY_TICKS = 1000  # ticks
 
 
 @dataclass(frozen=True)
@@ -46,12 +46,12 @@ class Timing:
     late: int = 0
 
     def __post_init__(self) -> None:
-        if not 0 <= self.chain_start <= LATEST_CHAIN:
+        if not 0 <= self.chain_start <= LATEST_CHAIN_CYCLES:
             raise UserError(
-                f"chain_start is {self.chain_start}, but it must be a number of cycles in 0..{LATEST_CHAIN}."
+                f"chain_start is {self.chain_start}, but it must be a number of cycles in 0..{LATEST_CHAIN_CYCLES}."
             )
-        if not 0 <= self.late <= LONGEST_DELAY:
-            raise UserError(f"late is {self.late}, but it must be a number of ticks in 0..{LONGEST_DELAY}.")
+        if not 0 <= self.late <= LONGEST_DELAY_TICKS:
+            raise UserError(f"late is {self.late}, but it must be a number of ticks in 0..{LONGEST_DELAY_TICKS}.")
         if self.drivers_on not in (1, 2, 3, 4):
             raise UserError(f"drivers_on is {self.drivers_on}, but it must name a slice from 1 to 4.")
         if len(self.acts) != JOINTS or not all(1 <= slice_number < SLICES_PER_TICK for slice_number in self.acts):

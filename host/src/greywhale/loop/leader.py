@@ -10,7 +10,7 @@ from greywhale.files.trajectory import Trajectory
 
 SLICE_S = 250e-6
 SLICES_PER_TICK = 4
-UNEVEN = 0.05  # a row may be early or late by this share of the usual spacing
+UNEVEN_SHARE = 0.05  # a row may be early or late by this share of the usual spacing
 
 
 def leader_slices(motion: Trajectory, wait_s: float, resample: bool = False) -> Floats:
@@ -29,7 +29,7 @@ def leader_slices(motion: Trajectory, wait_s: float, resample: bool = False) -> 
 def _require_even(motion: Trajectory) -> None:
     spacing = np.diff(motion.time_s)
     usual = float(np.median(spacing))
-    off = np.flatnonzero(np.abs(spacing - usual) > UNEVEN * usual)
+    off = np.flatnonzero(np.abs(spacing - usual) > UNEVEN_SHARE * usual)
     if off.size:
         row = int(off[0])
         kind = "a gap" if spacing[row] > 1.5 * usual else "uneven time"

@@ -16,10 +16,10 @@ from numpy.typing import ArrayLike
 
 from greywhale.base.types import Floats
 from greywhale.optimise.box import Box
-from greywhale.optimise.differential_evolution import WORST
+from greywhale.optimise.differential_evolution import WORST_COST
 from greywhale.optimise.optimiser import Optimiser
 
-SIGMA = 0.3
+START_SIGMA_SHARE = 0.3  # standard deviation of the first candidates, as a share of the box
 
 
 class CmaEs(Optimiser):
@@ -36,7 +36,7 @@ class CmaEs(Optimiser):
         *,
         pack: int | None = None,
         start: ArrayLike | None = None,
-        sigma: float = SIGMA,
+        sigma: float = START_SIGMA_SHARE,
     ) -> None:
         if box.dimensions < 2:
             raise ValueError("cma-es needs at least two coordinates; take another method for one")
@@ -75,6 +75,6 @@ class CmaEs(Optimiser):
         return self.box.from_unit(np.array(self._asked))
 
     def _learn(self, candidates: Floats, costs: Floats) -> None:
-        self._strategy.tell(self._asked, list(np.where(np.isfinite(costs), costs, WORST)))
+        self._strategy.tell(self._asked, list(np.where(np.isfinite(costs), costs, WORST_COST)))
         if self._strategy.stop():
             self._strategy = self._begin(2 * len(candidates), np.empty((0, self.box.dimensions)))

@@ -22,8 +22,8 @@ from greywhale.optimise.optimiser import PACK, Optimiser
 
 # Finite, because scipy evaluates a first pack of infinities a second time; far enough from the limit that sums stay
 # finite.
-WORST = 1e300
-FOR_EVER = 2**31 - 1
+WORST_COST = 1e300
+ENDLESS_GENERATIONS = 2**31 - 1  # the budget ends the run before
 
 
 class _Closed(BaseException):
@@ -95,7 +95,7 @@ class DifferentialEvolution(Optimiser):
             "updating": "deferred",
             "vectorized": True,
             "polish": False,
-            "maxiter": FOR_EVER,
+            "maxiter": ENDLESS_GENERATIONS,
             # Never converged: a negative tolerance is below every spread.
             "tol": 0.0,
             "atol": -1.0,
@@ -114,7 +114,7 @@ class DifferentialEvolution(Optimiser):
         return self.box.clip(self._channel.next_batch())
 
     def _learn(self, candidates: Floats, costs: Floats) -> None:
-        self._channel.costs.put(np.where(np.isfinite(costs), costs, WORST))
+        self._channel.costs.put(np.where(np.isfinite(costs), costs, WORST_COST))
 
     def close(self) -> None:
         self._finalizer()

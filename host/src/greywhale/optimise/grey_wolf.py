@@ -19,8 +19,8 @@ from greywhale.base.types import Floats
 from greywhale.optimise.box import Box, Source
 from greywhale.optimise.optimiser import PACK, Optimiser
 
-LEADERS = 3
-EQUAL_WEIGHTS = (1 / 3, 1 / 3, 1 / 3)
+LEADERS = 3  # alpha, beta, delta
+EQUAL_WEIGHTS = (1 / 3, 1 / 3, 1 / 3)  # of them, as in Eq. 15
 # Eq. 6 falls from 2; the text lets it end at 0, the printed formula at 1.
 A_START, A_END, A_END_AS_PRINTED = 2.0, 0.0, 1.0
 

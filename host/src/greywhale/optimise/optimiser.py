@@ -18,7 +18,7 @@ from greywhale.base.closing import Closing
 from greywhale.base.types import Floats
 from greywhale.optimise.box import Box, Source, scatter
 
-PACK = 10
+PACK = 10  # candidates in a batch, as in the paper
 
 
 @dataclass(frozen=True)

@@ -26,9 +26,9 @@ from greywhale.optimise.optimiser import Optimiser
 
 # Chosen by trial on ten of the standard functions, shifted, with other seeds than those of any published figure. levy,
 # schwefel226 and all rotated functions were kept aside. docs/optimise.md has the figures.
-A = 3.5
-WEIGHTS = (0.5, 0.3, 0.2)
-KEEP = 0.2
+A_FACTOR = 3.5  # the `a` of Eq. 6
+LEADER_WEIGHTS = (0.5, 0.3, 0.2)  # of alpha, beta, delta
+KEEP_PROBABILITY = 0.2  # of a coordinate
 
 
 class ShiftInvariantWolfWhale(Optimiser):
@@ -50,13 +50,15 @@ class ShiftInvariantWolfWhale(Optimiser):
         leaders, _ = best_three(self._pack, self._costs)
         draw = Draw.of(self._source, wolves, dimensions)
         alpha = draw_alpha_factor(self._source, wolves)
-        moved = hunt(self._pack, leaders, A, draw, alpha=alpha, origin=self._pack.mean(axis=0), weights=WEIGHTS)
+        moved = hunt(
+            self._pack, leaders, A_FACTOR, draw, alpha=alpha, origin=self._pack.mean(axis=0), weights=LEADER_WEIGHTS
+        )
         self._tried = self._bring_back(self._keep_some(moved))
         return self.box.from_unit(self._tried)
 
     def _keep_some(self, moved: Floats) -> Floats:
         wolves, dimensions = moved.shape
-        kept = self._source.random((wolves, dimensions)) < KEEP
+        kept = self._source.random((wolves, dimensions)) < KEEP_PROBABILITY
         changes = np.floor(self._source.random((wolves,)) * dimensions).astype(int)
         kept[np.arange(wolves), changes] = False
         return np.where(kept, self._pack, moved)

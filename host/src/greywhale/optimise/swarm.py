@@ -13,16 +13,16 @@ import numpy as np
 from greywhale.base.types import Floats
 from greywhale.optimise.optimiser import Optimiser
 
-INERTIA = 0.7298
-PULL = 1.49618
-FASTEST = 0.5
+INERTIA_WEIGHT = 0.7298
+ATTRACTION = 1.49618
+FASTEST_BOX_SHARE = 0.5  # of the box in a move
 
 
 def steer(
     velocity: Floats, places: Floats, own_best: Floats, best: Floats, limit: Floats, r1: Floats, r2: Floats
 ) -> Floats:
     """The particles' next velocities."""
-    velocity = INERTIA * velocity + PULL * (r1 * (own_best - places) + r2 * (best - places))
+    velocity = INERTIA_WEIGHT * velocity + ATTRACTION * (r1 * (own_best - places) + r2 * (best - places))
     return np.clip(velocity, -limit, limit)
 
 
@@ -39,7 +39,7 @@ class Swarm(Optimiser):
         if not len(self._pack):
             return self._first_pack()
         r1, r2 = self._source.random(self._pack.shape), self._source.random(self._pack.shape)
-        limit = FASTEST * self.box.width
+        limit = FASTEST_BOX_SHARE * self.box.width
         self._velocity = steer(self._velocity, self._pack, self._own_best, self.best.x, limit, r1, r2)
         moved = self._pack + self._velocity
         inside = self.box.clip(moved)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from greywhale.protocol.schema import Board, LeadPointRequest, Sample
 
-JOINTS = 4
+JOINTS = 4  # of the firmware; an arm may use fewer
 # One tick, s: the firmware samples the potentiometers a thousand times a second.
 TICK_S = 1e-3
 # Conversions of each potentiometer in a tick; the firmware adds them up.

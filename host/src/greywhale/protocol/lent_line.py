@@ -11,7 +11,7 @@ import socket
 from greywhale.protocol.socket_line import SocketLine
 from greywhale.protocol.transport import LENT, Line
 
-_PIECE = 65536
+_PIECE_BYTES = 65536
 
 
 class LentLine(SocketLine):
@@ -25,7 +25,7 @@ class LentLine(SocketLine):
         super().__init__(port, connection)
         connection.setblocking(False)
         with contextlib.suppress(BlockingIOError):  # what was said before is nobody's
-            while connection.recv(_PIECE):
+            while connection.recv(_PIECE_BYTES):
                 pass
 
     def close(self) -> None:

@@ -23,7 +23,7 @@ BAUD = 1_000_000
 
 # How long a read waits for the first byte. Short, so that deadlines are kept; long enough not to spin.
 READ_WAIT_S = 0.02
-_WRITE_WAIT_S = 1.0
+_WRITE_WAIT_S = 1.0  # until a write that does not end is an error
 # So long is DTR down before it rises again: a board's reset line needs some 2 ms.
 _DTR_DOWN_S = 0.05
 _BUSY = (errno.EBUSY, errno.EAGAIN, errno.EWOULDBLOCK)

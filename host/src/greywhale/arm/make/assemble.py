@@ -10,7 +10,7 @@ from greywhale.arm.make.motor import RAD_S_PER_RPM, DataSheet, tables
 from greywhale.arm.make.questions import Answers
 from greywhale.arm.parameters import JOINT_NAMES, USUAL_NOISE_V, ArmParameters
 
-MM, GRAM, GRAM_CM2 = 1e-3, 1e-3, 1e-7
+MM, GRAM, GRAM_CM2 = 1e-3, 1e-3, 1e-7  # in m, kg and kg m2
 SPARE_RAD = math.radians(5.0)  # of a track beyond the joint's range
 
 

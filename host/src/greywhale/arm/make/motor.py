@@ -11,8 +11,8 @@ from dataclasses import dataclass
 
 RAD_S_PER_RPM = math.tau / 60.0
 USUAL_NO_LOAD_SHARE = 0.05  # of the stall current
-BREAKAWAY = 1.25  # of the sliding friction
-USUAL_TIME_S = 0.02  # a brushed motor alone is at full speed about three times as late
+USUAL_BREAKAWAY_RATIO = 1.25  # friction at rest to sliding friction
+USUAL_TIME_CONSTANT_S = 0.02  # a brushed motor alone is at full speed about three times as late
 BACK_EMF_SHARE = 0.95  # of the slope at most: some of it is viscous
 
 
@@ -60,5 +60,5 @@ def tables(sheet: DataSheet) -> dict[str, dict[str, float]]:
             "viscous": viscous / ratio**2,
             "gear_ratio": ratio,
         },
-        "friction": {"coulomb": coulomb, "breakaway": BREAKAWAY * coulomb},
+        "friction": {"coulomb": coulomb, "breakaway": USUAL_BREAKAWAY_RATIO * coulomb},
     }

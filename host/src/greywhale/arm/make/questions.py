@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any, Protocol
 
 from greywhale.arm.make.body import MATERIALS
-from greywhale.arm.make.motor import RAD_S_PER_RPM, USUAL_NO_LOAD_SHARE, USUAL_TIME_S, contradiction
+from greywhale.arm.make.motor import RAD_S_PER_RPM, USUAL_NO_LOAD_SHARE, USUAL_TIME_CONSTANT_S, contradiction
 from greywhale.arm.parameters import JOINT_NAMES
 from greywhale.base.errors import UserError
 from greywhale.base.formats import units
@@ -84,7 +84,7 @@ LINKS = (
     "Link 2, the wrist: from the wrist pitch's axis to the roll's bearing.",
     "Link 3, the hand: from the roll's bearing to its tip.",
 )
-_LENGTHS_MM = (80.0, 140.0, 50.0, 120.0)
+_LENGTHS_MM = (80.0, 140.0, 50.0, 120.0)  # usual ones of links 0..3
 
 
 def collect(source: Source) -> Answers:
@@ -204,7 +204,7 @@ def _motor(source: Source, at: tuple[str, int], usual: Answers) -> Answers:
     usual.setdefault("no_load_current_a", float(f"{USUAL_NO_LOAD_SHARE * current:.2g}"))
     text = "Current without load (a 20th of the stall current is usual)"
     ask("no_load_current_a", text, units.AMPERE, 0.0, 0.5 * current)
-    guess = USUAL_TIME_S * torque / (rpm * RAD_S_PER_RPM) / ratio**2 * G_CM2_PER_KG_M2
+    guess = USUAL_TIME_CONSTANT_S * torque / (rpm * RAD_S_PER_RPM) / ratio**2 * G_CM2_PER_KG_M2
     usual.setdefault("rotor_inertia_gcm2", float(f"{guess:.2g}"))
     text = "The rotor's inertia (seldom told; this guess follows from the rest)"
     ask("rotor_inertia_gcm2", text, units.GRAM_CM2, 1e-6, 1e6)

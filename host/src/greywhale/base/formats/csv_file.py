@@ -22,7 +22,7 @@ from greywhale.base.formats import csv_dialect
 from greywhale.base.formats.whole import refuse_devices
 
 # Bytes that are read at once; no line is longer.
-BLOCK = 1 << 22
+BLOCK_BYTES = 1 << 22
 _BOM = b"\xef\xbb\xbf"
 # Times of recordings: three centuries, such as those since 1970, and steps of a microsecond, which decimals may round.
 _MOST_S, _LEAST_STEP_S = 1e10, 5e-7
@@ -118,7 +118,7 @@ class CsvFile:
         """
         line, offset, rest = self._line, self._offset, b""
         try:
-            while data := self._file.read(BLOCK):
+            while data := self._file.read(BLOCK_BYTES):
                 data = rest + data
                 end = data.rfind(b"\n") + 1
                 rest = data[end:]
@@ -163,7 +163,7 @@ class CsvFile:
         self._line, self._offset = 1, 0
         while True:
             try:
-                data = self._file.readline(BLOCK)
+                data = self._file.readline(BLOCK_BYTES)
             except OSError as error:
                 raise self._cannot_be_read(error) from None
             if not data:
@@ -212,8 +212,8 @@ class CsvFile:
         return csv_dialect.to_commas(lines, self._separator)
 
     def _refuse_long(self, line: bytes, number: int) -> None:
-        if len(line) >= BLOCK:
-            raise UserError(f"{self.name}, line {number}: a line of more than {BLOCK} bytes; is this a CSV file?")
+        if len(line) >= BLOCK_BYTES:
+            raise UserError(f"{self.name}, line {number}: a line of more than {BLOCK_BYTES} bytes; is this a CSV file?")
 
     def _cannot_be_read(self, error: OSError) -> UserError:
         return UserError(f"{self.name}: cannot be read: {os_reason(error)}.")

@@ -26,9 +26,10 @@ from greywhale.base.formats.whole import refuse_devices
 
 Model = TypeVar("Model", bound=BaseModel)
 
-_LONGEST = 1 << 22
-_DEEPEST = 24
-_LARGEST = 1 << 63
+# Limits of any file that greywhale writes; what is beyond would only keep the parser busy.
+_LONGEST_TEXT = 1 << 22  # letters
+_DEEPEST_LEVEL = 24  # of brackets, and parts of a key
+_LARGEST_INTEGER = 1 << 63  # as TOML has them
 _BARE = re.compile(r"[A-Za-z0-9_-]+")
 # How the first line of a log or a motion begins, and one of a TOML file: a key, or a table's name.
 _CSV = re.compile(r'"?time_s"?[,;\t]')
@@ -142,8 +143,8 @@ def _first_line(text: str) -> tuple[int, str]:
 
 def _refuse_depth(text: str, name: str) -> None:
     """Refuse what would keep the parser busy: a file, a key or brackets beyond any that greywhale writes."""
-    if len(text) > _LONGEST:
-        raise UserError(f"{name}: {len(text)} characters; a TOML file of greywhale has at most {_LONGEST}.")
+    if len(text) > _LONGEST_TEXT:
+        raise UserError(f"{name}: {len(text)} characters; a TOML file of greywhale has at most {_LONGEST_TEXT}.")
     depth = parts = 0
     for found in _TOKEN.finditer(text):
         token = found.group()
@@ -156,9 +157,9 @@ def _refuse_depth(text: str, name: str) -> None:
             continue
         if found.lastgroup != "part":
             parts = 0
-        if depth > _DEEPEST or parts > _DEEPEST:
+        if depth > _DEEPEST_LEVEL or parts > _DEEPEST_LEVEL:
             line = text.count("\n", 0, found.start()) + 1
-            raise UserError(f"{name}, line {line}: nested more than {_DEEPEST} deep; no file of greywhale is.")
+            raise UserError(f"{name}, line {line}: nested more than {_DEEPEST_LEVEL} deep; no file of greywhale is.")
 
 
 def _refuse_odd_values(data: dict[str, Any], name: str) -> None:
@@ -166,7 +167,7 @@ def _refuse_odd_values(data: dict[str, Any], name: str) -> None:
     for location, value in _odd_values(data, ()):
         if isinstance(value, datetime.date | datetime.time):
             raise UserError(f"{name}: {key_path(location)} is a date or a time, but no file of greywhale holds one.")
-        if isinstance(value, int) and abs(value) > _LARGEST:
+        if isinstance(value, int) and abs(value) > _LARGEST_INTEGER:
             # Python writes no integer of thousands of digits, but reads one from hexadecimal digits.
             shown = cut(str(value), 30) if value.bit_length() < 1000 else f"a number of {value.bit_length()} bits"
             raise UserError(f"{name}: {key_path(location)} is {shown}, which is out of any range.")

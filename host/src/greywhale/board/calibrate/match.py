@@ -5,11 +5,11 @@ from __future__ import annotations
 from typing import Any
 
 from greywhale.arm import ArmParameters
-from greywhale.board.pots import COUNT14, FULL_SCALE
+from greywhale.board.pots import COUNT14_PER_COUNT, FULL_SCALE
 from greywhale.protocol.joints import require_same
 from greywhale.protocol.table import ParameterTable
 
-WHOLE = COUNT14 * FULL_SCALE
+WHOLE = COUNT14_PER_COUNT * FULL_SCALE
 
 
 def with_board_pots(arm: ArmParameters, table: ParameterTable) -> ArmParameters:

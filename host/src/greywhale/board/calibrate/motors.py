@@ -22,17 +22,17 @@ from greywhale.protocol import schema
 from greywhale.protocol.firmware import ANGLE_LSB, JOINTS, STEP_LSB
 from greywhale.protocol.table import ParameterTable
 
-SHARES = (0.1, 0.17, 0.25, 0.35)  # of the supply, tried one after the other
+PULSE_SHARES = (0.1, 0.17, 0.25, 0.35)  # of the supply, tried one after the other
 LEASE_MS = 160  # motors off by the firmware, whatever this host does; soft start is 100 of it
-WAY_RAD = 0.08  # where a pulse sends its joint
-FARTHEST_RAD = 0.16
-LEAST_RAD = 0.02  # half of what lies between a pulse one way and one the other: less is no motion
+PULSE_WAY_RAD = 0.08  # where a pulse sends its joint
+FARTHEST_RAD = 0.16  # of a joint from where it should be: twice a pulse's way
+LEAST_WAY_RAD = 0.02  # half of what lies between a pulse one way and one the other: less is no motion
 STILL_TICKS, STILL_RAD, PATIENCE_TICKS = 200, 0.008, 5000  # an arm that still falls would hide a weak pulse
 WEAK_SHARE = 0.5  # of the others' way a volt: healthy unlike joints are above 0.6, weak ones below 0.45
-MUCH_SHARE = 0.2  # of the supply, if every motor needs it
-OTHERS_SHARE = 2.0  # another joint that moves so many times farther has this motor
-SETTLE_TICKS = 250
-_STIFF = 64.0
+MUCH_SUPPLY_SHARE = 0.2  # if every motor needs so much of the supply, the supply is low
+OTHER_JOINT_RATIO = 2.0  # another joint that moves so many times farther has this motor
+SETTLE_TICKS = 250  # watched after the lease, while the joint settles
+_STIFF_KP = 64.0  # so that a small error already gets the whole voltage of the pulse
 
 
 @dataclass(frozen=True)
@@ -60,7 +60,7 @@ def examine_motor(
     the potentiometers calibrated; the pulses' own set runs afterwards. Raises UserError where no joint moves, or
     another one.
     """
-    for share in SHARES:
+    for share in PULSE_SHARES:
         volts = share * table.supply_v
         report(volts)
         weak = pulse_table(table, joint, volts)
@@ -73,19 +73,19 @@ def examine_motor(
                 "common ground, and 1000 uF or more at the drivers, and begin anew."
             ) from None
         farthest = int(np.argmax(np.abs(way)))
-        if abs(way[farthest]) < LEAST_RAD:
+        if abs(way[farthest]) < LEAST_WAY_RAD:
             continue
-        if farthest != joint and abs(way[farthest]) > OTHERS_SHARE * abs(way[joint]):
+        if farthest != joint and abs(way[farthest]) > OTHER_JOINT_RATIO * abs(way[joint]):
             raise UserError(
                 f"{device.port}: the motor of joint {joint} moved joint {farthest}: their motors, or their followers' "
                 "potentiometers, are swapped; exchange the wires at the board, and begin anew."
             )
-        if abs(way[joint]) >= LEAST_RAD:
+        if abs(way[joint]) >= LEAST_WAY_RAD:
             return Motor(joint, 1 if way[joint] > 0.0 else -1, volts, float(abs(way[joint])))
     raise UserError(
-        f"{device.port}: the motor of joint {joint} did not move it with {SHARES[-1] * table.supply_v:.1f} V: check "
-        "that the motors' supply is on, the driver's enable, PWM and direction wires, the motor's own wires, and that "
-        "the joint moves freely."
+        f"{device.port}: the motor of joint {joint} did not move it with {PULSE_SHARES[-1] * table.supply_v:.1f} V: "
+        "check that the motors' supply is on, the driver's enable, PWM and direction wires, the motor's own wires, and "
+        "that the joint moves freely."
     )
 
 
@@ -96,7 +96,7 @@ def _answer(device: Device, weak: ParameterTable, joint: int) -> Floats:
     other order, and the smaller of both counts.
     """
     once = _between(device, weak, joint, 1)
-    if np.abs(once).max() < LEAST_RAD:
+    if np.abs(once).max() < LEAST_WAY_RAD:
         return once
     again = -_between(device, weak, joint, -1)
     return np.where(once * again > 0.0, np.sign(once) * np.minimum(np.abs(once), np.abs(again)), 0.0)
@@ -109,21 +109,21 @@ def _between(device: Device, weak: ParameterTable, joint: int, way: int) -> Floa
 
 def remarks(motors: Sequence[Motor], supply_v: float) -> tuple[str, ...]:
     """Sentences about motors that moved their joints, but with more voltage than one expects."""
-    if motors and min(one.volts for one in motors) >= MUCH_SHARE * supply_v:
+    if motors and min(one.volts for one in motors) >= MUCH_SUPPLY_SHARE * supply_v:
         return (
             f"Every motor needed {min(one.volts for one in motors):.1f} V or more to move its joint: check the motors' "
             f"supply; the board counts on {supply_v:g} V (supply_mv).",
         )
-    remarks = []
+    sentences = []
     for motor in motors:
         usual = float(np.median([other.answer for other in motors if other is not motor] or [0.0]))
         if motor.answer < WEAK_SHARE * usual:
-            remarks.append(
+            sentences.append(
                 f"The motor of joint {motor.joint} moved it by {1e3 * motor.answer:.0f} mrad a volt, the others theirs "
                 f"by {1e3 * usual:.0f}: it is weak, or its joint turns hard; check its wires, its driver's current "
                 "limit, and that the joint turns freely by hand."
             )
-    return tuple(remarks)
+    return tuple(sentences)
 
 
 def pulse_table(table: ParameterTable, joint: int, volts: float) -> ParameterTable:
@@ -140,7 +140,7 @@ def pulse_table(table: ParameterTable, joint: int, volts: float) -> ParameterTab
     }
     for other in range(JOINTS):
         changes |= {
-            f"joint{other}.kp": parameters[f"joint{other}.kp"].to_raw(_STIFF),
+            f"joint{other}.kp": parameters[f"joint{other}.kp"].to_raw(_STIFF_KP),
             f"joint{other}.kd": 0,
             f"joint{other}.ki": 0,
             f"joint{other}.ku_mv": round(1000.0 * volts) if other == joint else 0,
@@ -155,7 +155,7 @@ def pulse(device: Device, weak: ParameterTable, joint: int, way: int) -> Floats:
     run_set(device, weak)
     _wait_until_still(device)
     step = [0, 0, 0, 0]
-    step[joint] = way * round(WAY_RAD / STEP_LSB)
+    step[joint] = way * round(PULSE_WAY_RAD / STEP_LSB)
     device.telemetry(1)
     samples: list[schema.Sample] = []
     try:

@@ -17,8 +17,8 @@ from greywhale.board.stream import stream
 from greywhale.protocol import schema
 from greywhale.protocol.table import ParameterTable
 
-SHOWN_EVERY = 100  # ticks between two live readings
-LONGEST_TICKS = 600_000
+SHOWN_EVERY_TICKS = 100  # a live reading every tenth of a second
+LONGEST_TICKS = 600_000  # ten minutes: so much is kept, and a script is waited for
 
 
 class PersonAnswer(Enum):
@@ -63,7 +63,7 @@ class Watch:
         try:
             for number, one in enumerate(stream(self.device, 1), 1):
                 samples.append(one.sample)
-                if number % SHOWN_EVERY == 0:
+                if number % SHOWN_EVERY_TICKS == 0:
                     self.guide.show(_reading(counts_of([one.sample], self.table)[0], pots))
                     if answer := self.guide.answer():
                         break

@@ -15,14 +15,14 @@ import numpy as np
 from greywhale.base.errors import BadUsage, UserError
 from greywhale.base.types import Floats
 from greywhale.board.calibrate.sweep import Sweep
-from greywhale.board.pots import COUNT14, FULL_SCALE, POTS
+from greywhale.board.pots import COUNT14_PER_COUNT, FULL_SCALE, POTS
 from greywhale.board.refusal import pot_name, upper_first
 from greywhale.protocol import schema
 from greywhale.protocol.firmware import JOINTS
 from greywhale.protocol.joints import ALL, Joints
 
 SHORTEST_TRACK, LONGEST_TRACK = np.radians(180.0), np.radians(450.0)  # the board takes no longer one
-LEAST_TURN = 0.3  # rad between two poses: with less, a degree in a hand is much of the scale
+LEAST_TURN_RAD = 0.3  # rad between two poses: with less, a degree in a hand is much of the scale
 SLIPPED_COUNTS = 8.0  # the same pose twice: 40 mrad of a usual track
 MARGIN_RAD = 0.03  # kept from both ends of what the person showed
 
@@ -62,8 +62,8 @@ class Calibration:
         values: dict[str, float] = {}
         for pot, name in enumerate(POTS):
             if pot in self.pots:
-                values[f"{name}.zero"] = COUNT14 * self.zero[pot]
-            values[f"{name}.scale"] = self.scale[pot] / COUNT14 if pot in self.pots else 0.0
+                values[f"{name}.zero"] = COUNT14_PER_COUNT * self.zero[pot]
+            values[f"{name}.scale"] = self.scale[pot] / COUNT14_PER_COUNT if pot in self.pots else 0.0
         for joint in self.joints:
             values[f"joint{joint}.limit_min"], values[f"joint{joint}.limit_max"] = self.limits[joint]
         return {name: _raw(name, value) for name, value in values.items()}
@@ -95,7 +95,7 @@ def match(calibration: Calibration, sweeps: Sequence[Sweep], first: Pose, same: 
     moved = same.counts[JOINTS:] - first.counts[JOINTS:]
     scale = calibration.scale.copy()
     for joint in calibration.joints:
-        if abs(turned[joint]) >= LEAST_TURN:
+        if abs(turned[joint]) >= LEAST_TURN_RAD:
             scale[JOINTS + joint] = turned[joint] / moved[joint]
     zero = calibration.zero.copy()
     zero[JOINTS:] = first.counts[JOINTS:] - first.angles / scale[JOINTS:]
@@ -118,10 +118,10 @@ def require_apart(first: Floats, second: Floats, joints: Sequence[int]) -> None:
     """Refuse two poses (4,), rad, from which no scale can be told."""
     for joint in joints:
         turned = second[joint] - first[joint]
-        if abs(turned) < LEAST_TURN:
+        if abs(turned) < LEAST_TURN_RAD:
             raise BadUsage(
                 f"the two poses differ by {turned:.2g} rad at joint {joint}; choose a second pose that differs by "
-                f"{LEAST_TURN:g} rad or more at every joint."
+                f"{LEAST_TURN_RAD:g} rad or more at every joint."
             )
 
 

@@ -17,8 +17,11 @@ from greywhale.board.refusal import pot_name, upper_first
 SMOOTH_TICKS = 9  # a reading that differs from its neighbours for less time is a jump
 LEAST_COUNTS = 40.0  # 12 degrees of a usual track: less is no sweep
 OTHERS_SHARE = 0.5  # of the sweep: another reading that moves as far is moved as well
-RAIL_COUNTS = 4.0
-CROSSED_FROM, CROSSED_SPAN = 0.88 * FULL_SCALE, 0.12 * FULL_SCALE  # a pull-down of some ten times the track
+RAIL_COUNTS = 4.0  # from the end of the converter's range
+CROSSED_FROM_COUNTS, CROSSED_SPAN_COUNTS = (
+    0.88 * FULL_SCALE,
+    0.12 * FULL_SCALE,
+)  # a pull-down of some ten times the track
 DEAD_ZONE_COUNTS = 300.0  # a jump so far, from near one end to near the other, crosses the gap of the track
 JUMP_COUNTS, MOST_JUMPS = 15.0, 2
 
@@ -118,7 +121,9 @@ def _dead_zone(name: str) -> str:
 def _is_crossed(own: Floats) -> bool:
     """True if it stays near 5 V but is at no rail: a pull-down makes that of an end of the track on the pin."""
     low, high = float(own.min()), float(own.max())
-    return low > CROSSED_FROM and high < FULL_SCALE - RAIL_COUNTS and RAIL_COUNTS < high - low < CROSSED_SPAN
+    return (
+        low > CROSSED_FROM_COUNTS and high < FULL_SCALE - RAIL_COUNTS and RAIL_COUNTS < high - low < CROSSED_SPAN_COUNTS
+    )
 
 
 def _crossed(name: str, reading: str) -> str:

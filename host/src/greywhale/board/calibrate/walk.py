@@ -20,7 +20,7 @@ from greywhale.protocol.joints import Joints
 
 HELD_TICKS = 500  # that a pose is looked at
 STILL_COUNTS = 3.0  # of the mean over a tenth of a second, meanwhile
-TRIES = 3  # of a script
+SCRIPT_TRIES = 3  # of a script
 MOST_APART_RAD = 0.15  # between the arms in the last pose: 9 degrees, more than a hand is wrong by
 _COUNTS = {2: "two", 4: "four", 6: "six", 8: "eight"}
 
@@ -111,7 +111,7 @@ class Walk:
     def _refuse(self, step: str, mistake: str, at_last: str) -> None:
         """Tell a mistake; a script, which mends nothing, makes it but a few times."""
         self._tries[step] += 1
-        if not self._watch.guide.patient and self._tries[step] == TRIES:
+        if not self._watch.guide.patient and self._tries[step] == SCRIPT_TRIES:
             raise UserError(f"{self._watch.device.port}: {at_last}")
         self._watch.guide.tell(mistake)
 

@@ -17,8 +17,8 @@ from greywhale.protocol.table import ParameterTable, physical
 
 SUPPLY_SHARE = 0.1  # a battery's voltage differs by so much between full and flat
 EEPROM_WRITES = 100_000  # of one cell, by the chip's data sheet
-MANY_SAVES = 50_000
-_SHOWN = 3  # differences that are told one by one
+MANY_SAVES = 50_000  # half of these: time to plan another board
+_MOST_SHOWN = 3  # differences that are told one by one
 _FLASH = "Flash this host's firmware with `greywhale flash`."
 _STARTS = {
     schema.ResetCause.BROWN_OUT: (
@@ -136,8 +136,8 @@ def _against(table: ParameterTable, wanted: Mapping[str, int], path: Path) -> Fi
     if not names:
         of_all = f" It is older and says nothing of {counted(len(silent), 'parameter')}." if silent else ""
         return Finding("parameters", Verdict.GOOD, f"The board runs what {path} says (CRC {table.crc:#06x}).{of_all}")
-    shown = ", ".join(_difference(name, table, wanted) for name in names[:_SHOWN])
-    more = f" and {len(names) - _SHOWN} more" if len(names) > _SHOWN else ""
+    shown = ", ".join(_difference(name, table, wanted) for name in names[:_MOST_SHOWN])
+    more = f" and {len(names) - _MOST_SHOWN} more" if len(names) > _MOST_SHOWN else ""
     return Finding(
         "parameters",
         Verdict.BAD,

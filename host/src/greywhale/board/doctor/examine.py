@@ -18,7 +18,7 @@ from greywhale.board.session import Session
 from greywhale.board.upload import read_parameters
 from greywhale.protocol import schema
 
-LINK_S, REST_S = 10.0, 2.0
+LINK_S, REST_S = 10.0, 2.0  # how long the link is tried, and the arm is watched at rest
 AT_REST = (schema.State.DISABLED, schema.State.FAULT)
 
 

@@ -19,12 +19,12 @@ from greywhale.protocol.firmware import TICK_S
 MEAN_TICKS = 100  # whole periods of 50 and of 60 Hz, so that hum stays out of the mean
 MOVED_COUNTS = 8.0  # a mean that wanders farther: somebody moves the arm
 # A jump leaves the median of its neighbourhood by so much, and by so many times the usual noise.
-MEDIAN_TICKS, JUMP_COUNTS, JUMP_NOISES = 9, 6.0, 8.0
+MEDIAN_TICKS, JUMP_COUNTS, JUMP_NOISE_RATIO = 9, 6.0, 8.0
 # rms. One count is the converter's own step; a joint of 300 degrees then follows to 5 mrad.
-MUCH_NOISE, MOST_NOISE = 1.5, 4.0
+MUCH_NOISE_COUNTS, MOST_NOISE_COUNTS = 1.5, 4.0
 # Two that wander together and stand together are one: an open input keeps the charge of the one converted before.
-ALIKE, ALIKE_COUNTS = 0.7, 3.0
-HUM_HZ, MUCH_HUM = (50.0, 60.0), 1.5  # amplitude in counts, its first harmonic included
+ALIKE_CORRELATION, ALIKE_COUNTS = 0.7, 3.0
+HUM_HZ, MUCH_HUM_COUNTS = (50.0, 60.0), 1.5  # amplitude in counts, its first harmonic included
 
 
 @dataclass(frozen=True)
@@ -43,7 +43,7 @@ def look(counts: Floats) -> Quiet:
     median = scipy.ndimage.median_filter(counts, MEDIAN_TICKS, mode="nearest")
     away = counts - median
     usual = 1.4826 * float(np.median(np.abs(away - np.median(away))))
-    jumped = np.abs(away) > max(JUMP_COUNTS, JUMP_NOISES * usual)
+    jumped = np.abs(away) > max(JUMP_COUNTS, JUMP_NOISE_RATIO * usual)
     settled = np.where(jumped, median, counts)
     mean = scipy.ndimage.uniform_filter1d(settled, MEAN_TICKS, mode="nearest")
     rest = settled - mean
@@ -86,7 +86,7 @@ def _alike(counts: Floats) -> Finding:
         (one, other)
         for one in range(len(POTS))
         for other in range(one + 1, len(POTS))
-        if together[one, other] > ALIKE and abs(mean[one] - mean[other]) < ALIKE_COUNTS
+        if together[one, other] > ALIKE_CORRELATION and abs(mean[one] - mean[other]) < ALIKE_COUNTS
     ]
     if not pairs:
         return Finding("inputs", Verdict.GOOD, "Each reads something of its own.")
@@ -115,20 +115,20 @@ def _jumps(quiet: list[Quiet]) -> Finding:
 
 def _noise(quiet: list[Quiet]) -> Finding:
     noise = np.array([one.noise for one in quiet])
-    loud = [pot for pot in range(len(POTS)) if noise[pot] > MUCH_NOISE]
+    loud = [pot for pot in range(len(POTS)) if noise[pot] > MUCH_NOISE_COUNTS]
     if not loud:
         return Finding("noise", Verdict.GOOD, f"At most {noise.max():.1f} counts rms.")
     listed = ", ".join(f"{pot_name(pot)} {noise[pot]:.1f}" for pot in loud)
     return Finding(
         "noise",
-        Verdict.BAD if noise.max() > MOST_NOISE else Verdict.NOTE,
+        Verdict.BAD if noise.max() > MOST_NOISE_COUNTS else Verdict.NOTE,
         f"Noisy, in counts rms: {listed}.",
         "Put 100 nF from wiper to ground at the board's pin, keep motor wires away, feed the potentiometers from 5V.",
     )
 
 
 def _hums(quiet: list[Quiet]) -> Finding:
-    humming = [pot for pot, one in enumerate(quiet) if one.hum > MUCH_HUM]
+    humming = [pot for pot, one in enumerate(quiet) if one.hum > MUCH_HUM_COUNTS]
     if not humming:
         return Finding("hum", Verdict.GOOD, f"At most {max(one.hum for one in quiet):.1f} counts of mains hum.")
     listed = ", ".join(f"{pot_name(pot)} {quiet[pot].hum:.1f} counts at {quiet[pot].hum_hz:g} Hz" for pot in humming)

@@ -14,7 +14,7 @@ from greywhale.board.flash.stk500 import LANGUAGES, Stk500
 from greywhale.board.flash.talk import Talk
 from greywhale.protocol.lines import open_line
 
-_ROUNDS = 3
+_GREETING_ROUNDS = 3  # through the likely dialects, each after a reset
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ def find_bootloader(port: str, likely: Sequence[Dialect], others: Sequence[Diale
 
     Every try opens the port anew, which resets the board and so starts its bootloader.
     """
-    for dialect in [*list(likely) * _ROUNDS, *others]:
+    for dialect in [*list(likely) * _GREETING_ROUNDS, *others]:
         with _open(port, dialect) as line:
             if line.enter():
                 return Bootloader(dialect, line.signature())

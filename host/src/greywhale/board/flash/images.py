@@ -18,8 +18,8 @@ PACKAGED = Path(__file__).resolve().parents[2] / "data" / "firmware"
 
 _MAGIC = b"greywhale image\0"
 _RECORD = struct.Struct("<16sB3s3BI17s")
-_LAYOUT = 1
-_LARGEST = 1 << 20  # bytes; no board has as much
+_LAYOUT_VERSION = 1  # of the record in an image
+_LARGEST_IMAGE_BYTES = 1 << 20  # no board has as much
 ERASED = b"\xff"  # a byte of memory
 
 _FORM = re.compile("(?i):([0-9a-f]{2}){5,}")
@@ -75,7 +75,7 @@ def read_pieces(path: Path) -> list[tuple[int, bytes]]:
         raise BadUsage(f"{path}: cannot be read: {os_reason(error)}.") from None
     pieces: list[tuple[int, bytearray]] = []
     for address, data in _records(path, lines):
-        if address + len(data) > _LARGEST:
+        if address + len(data) > _LARGEST_IMAGE_BYTES:
             raise BadUsage(f"{path}: data at address {address:#x}; no board has as much memory.")
         if pieces and address == pieces[-1][0] + len(pieces[-1][1]):
             pieces[-1][1].extend(data)
@@ -132,6 +132,6 @@ def _find_record(memory: bytearray) -> Record | None:
     if start < 0 or start + _RECORD.size > len(memory):
         return None
     _, layout, signature, *version, schema_hash, sources = _RECORD.unpack_from(memory, start)
-    if layout != _LAYOUT:
+    if layout != _LAYOUT_VERSION:
         return None
     return Record(signature, ".".join(map(str, version)), schema_hash, sources.rstrip(b"\0").decode("ascii", "replace"))

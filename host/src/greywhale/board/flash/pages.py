@@ -20,9 +20,9 @@ from greywhale.board.flash.images import ERASED, Image
 from greywhale.board.flash.stk500 import Stk500
 from greywhale.protocol.transport import PortDisturbedError, PortLostError
 
-_ATTEMPTS = 3
+_PAGE_ATTEMPTS = 3  # to write or read a page, each after a restart
 _LOOP = b"\xff\xcf"  # rjmp to itself, with interrupts off and all pins inputs as after every restart
-_NOTHING = 2 * ERASED  # a word that changes nothing wherever it is written, but a page is erased for it
+_ERASED_WORD = 2 * ERASED  # a word that changes nothing wherever it is written, but a page is erased for it
 
 
 class Memory:
@@ -35,7 +35,7 @@ class Memory:
         self.port, self.line, self._restart = port, line, restart
 
     def write(self, address: int, content: bytes) -> None:
-        for _ in range(_ATTEMPTS):
+        for _ in range(_PAGE_ATTEMPTS):
             if self.line.write(address, content):
                 return
             self._resume(address)
@@ -43,7 +43,7 @@ class Memory:
 
     def read(self, block: range) -> bytes:
         """A page at most."""
-        for _ in range(_ATTEMPTS):
+        for _ in range(_PAGE_ATTEMPTS):
             found = self.line.read(block.start, len(block) + len(block) % 2)  # whole words
             if found is not None:
                 return found[: len(block)]
@@ -89,7 +89,7 @@ def write_image(port: str, dialect: Dialect, image: Image, size: int, report: Pr
             pages = [first, *(others if _must_erase_gaps(memory, image, held, size) else held)]
             content = {page: image.content(page).ljust(size, ERASED) for page in held} | {first: loop}
             for done, page in enumerate(pages, start=1):
-                memory.write(page.start, content.get(page, _NOTHING))
+                memory.write(page.start, content.get(page, _ERASED_WORD))
                 report("writing", done / len(pages))
             written = [first, *held]
             for page, found in zip(written, memory.read_all(written, "verifying", report), strict=True):
@@ -105,7 +105,7 @@ def write_image(port: str, dialect: Dialect, image: Image, size: int, report: Pr
 def _write_first(port: str, dialect: Dialect, page: range, content: bytes, size: int) -> None:
     """Write the first page, and let the board start. Once after each restart: a second write erases the next page."""
     found = b""
-    for _ in range(_ATTEMPTS):
+    for _ in range(_PAGE_ATTEMPTS):
         with enter_bootloader(port, dialect) as line:
             memory = Memory(port, line)
             memory.read(page)  # the first question may be lost, and asked again it does no harm

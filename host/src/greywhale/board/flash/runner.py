@@ -14,7 +14,7 @@ from greywhale.base import system
 from greywhale.base.errors import UserError, os_reason
 from greywhale.base.processes import start
 
-_LOOK_EVERY_S = 0.1
+_LOOK_EVERY_S = 0.1  # at the guard, while the tool runs
 GRACE_S = 5.0  # for a tool to end by itself
 _PROBLEM = re.compile(r"error|failed|denied|timeout|cannot|can't", re.IGNORECASE)
 _ESCAPE = re.compile(r"\x1b\[[0-9;]*[A-Za-z]")

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 from greywhale.protocol.transport import Line
 
-_ASK_EVERY_S = 0.05
+_ASK_EVERY_S = 0.05  # a bootloader answers within milliseconds
 # A bootloader that listens answers the first question; all kinds listen for at least half a second after the reset.
 _TRY_S = 0.5
 

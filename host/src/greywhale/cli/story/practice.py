@@ -27,7 +27,7 @@ from greywhale.protocol.table import ParameterTable
 UNTUNED, OTHER = "before_tuning", "table_9"  # of the paper: where tuning starts, and the changed controller
 REST_FILE = "rest_leader.csv"  # a leader that the person holds still
 PRACTICE_S = 20.0
-POSE = (0.0, 0.4, 0.0, 0.0)  # rad, where it begins: the arm off its lower stops, room to both sides
+START_POSE_RAD = (0.0, 0.4, 0.0, 0.0)  # the arm off its lower stops, room to both sides
 # The last evaluations of a search would gain little, and here the motion only has to be a good one.
 DESIGN_BUDGET = 150
 # To validate, with the same controllers and with others: was the arm learnt, or the arm with its controllers?
@@ -54,7 +54,7 @@ def practise(
         return lambda what, fraction: report(f"{name}: {what}", fraction)
 
     rest, motion = folder / REST_FILE, folder / "practice_leader.csv"
-    pose = np.array([angle if joint in nominal.joints_in_use else 0.0 for joint, angle in enumerate(POSE)])
+    pose = np.array([angle if joint in nominal.joints_in_use else 0.0 for joint, angle in enumerate(START_POSE_RAD)])
     save_leader(rest, Trajectory(np.array([0.0, 1.0]), np.array([pose, pose])))
     untuned = tables(base)[0]
     designed = design(nominal, pose, table=untuned, seconds=seconds, budget=DESIGN_BUDGET, report=named("practice"))

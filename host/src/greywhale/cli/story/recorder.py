@@ -26,7 +26,7 @@ from greywhale.protocol.joints import Joints
 SETTLE_S = 1.0  # recorded after the leader's last movement
 LEAD_S = 0.5  # between the end of the soft start and the leader's first movement
 READY_RAD = 0.05  # both arms are back at the start within this
-READY_WAIT_S = 20.0
+READY_WAIT_S = 20.0  # for both arms to be there
 
 
 class HuntedError(UserError):

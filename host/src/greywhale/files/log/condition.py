@@ -13,11 +13,11 @@ from greywhale.files.log.check import Check, compare, rows_stated
 from greywhale.files.log.units import doubt_spacing
 
 # Fewer missing samples in a row are no gap: a link may lose some.
-_MOST_MISSING = 10
+_MOST_MISSING_SAMPLES = 10
 # Whatever times a file has: no two rows are closer, and no gap counts more samples.
 _SHORTEST_S, _MOST_SAMPLES = 1e-6, 1e15
 # A sentence names so many gaps one by one.
-_NAMED = 3
+_MOST_NAMED_GAPS = 3
 
 
 @dataclass(frozen=True)
@@ -62,7 +62,7 @@ def gaps_in(time_s: NDArray[np.float64]) -> tuple[Gap, ...]:
     steps = np.diff(time_s)
     period = max(float(np.median(steps)), _SHORTEST_S)
     # Clocks and decimals round.
-    rows = np.flatnonzero(steps > (_MOST_MISSING + 1.5) * period)
+    rows = np.flatnonzero(steps > (_MOST_MISSING_SAMPLES + 1.5) * period)
     return tuple(
         Gap(round(after, 6), round(length, 6), round(min(length / period, _MOST_SAMPLES)) - 1)
         for after, length in zip(time_s[rows].tolist(), steps[rows].tolist(), strict=True)
@@ -71,5 +71,5 @@ def gaps_in(time_s: NDArray[np.float64]) -> tuple[Gap, ...]:
 
 def _describe(gaps: tuple[Gap, ...]) -> str:
     each = [f"{gap.length_s:.7g} s ({counted(gap.samples, 'sample')}) after {gap.after_s:.7g} s" for gap in gaps]
-    more = f", and {counted(len(gaps) - _NAMED, 'gap')} more" if len(gaps) > _NAMED else ""
-    return f"samples are missing for {', '.join(each[:_NAMED])}{more}; nothing is known of the arm there."
+    more = f", and {counted(len(gaps) - _MOST_NAMED_GAPS, 'gap')} more" if len(gaps) > _MOST_NAMED_GAPS else ""
+    return f"samples are missing for {', '.join(each[:_MOST_NAMED_GAPS])}{more}; nothing is known of the arm there."

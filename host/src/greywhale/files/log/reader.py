@@ -22,12 +22,12 @@ from greywhale.protocol.firmware import JOINTS
 from greywhale.protocol.joints import ALL, Joints, parse
 from greywhale.protocol.table import ParameterTable
 
-_MOST_WHOLE = (1 << 63) - 1
+_LARGEST_WHOLE_NUMBER = (1 << 63) - 1  # in a header
 # No board sends larger values: 16 bits of 1/4096 rad and of mV. Such values are another tool's degrees or millivolts.
 _MOST = {"leader": (8.0, "rad"), "follower": (8.0, "rad"), "voltage": (33.0, "V")}
 _FOLLOWING = STATES.index("following")
 # More changes of a voltage than these, and in all so many, are no chance.
-_MOST_CHANGES, _ENOUGH = 1.2, 100
+_MOST_CHANGES_PER_PERIOD, _ENOUGH_CHANGES = 1.2, 100
 # Where each quantity stands in a row of numbers, behind the time.
 _PLACES = {name: slice(1 + place * JOINTS, 1 + (place + 1) * JOINTS) for place, name in enumerate(_MOST)}
 # What a row holds; of other letters numpy takes some for blanks.
@@ -176,10 +176,10 @@ def refuse_other_times(name: str, facts: dict[str, str], time_s: NDArray[np.floa
 
 def _refuse_other_period(name: str, origin: Origin, columns: _Columns) -> None:
     """Refuse a control period that the rows contradict: between its ends no voltage changes."""
-    if origin.period_ms is None or columns.changes < _ENOUGH:
+    if origin.period_ms is None or columns.changes < _ENOUGH_CHANGES:
         return
     length_ms = 1e3 * float(columns.time[columns.rows - 1] - columns.time[0])
-    if columns.changes > _MOST_CHANGES * length_ms / origin.period_ms:
+    if columns.changes > _MOST_CHANGES_PER_PERIOD * length_ms / origin.period_ms:
         raise UserError(
             f"{name}: period_ms is {origin.period_ms} in the header, but by the time column voltages change every "
             f"{length_ms / columns.changes:.3g} ms: it is the header of another log, or was edited."
@@ -216,7 +216,7 @@ def _count_lines(path: str | Path) -> int:
     """An upper bound on the number of lines of a file."""
     count = 1
     with open(path, "rb") as file:
-        while data := file.read(csv_file.BLOCK):
+        while data := file.read(csv_file.BLOCK_BYTES):
             count += data.count(b"\n")
     return count
 
@@ -273,7 +273,7 @@ def _every_ticks(facts: dict[str, str], name: str) -> int | None:
 
 
 def _dropped(facts: dict[str, str], name: str) -> int:
-    return _whole(facts, "dropped_samples", name, 0, _MOST_WHOLE) or 0
+    return _whole(facts, "dropped_samples", name, 0, _LARGEST_WHOLE_NUMBER) or 0
 
 
 def _whole(facts: dict[str, str], key: str, name: str, least: int, most: int) -> int | None:

@@ -18,17 +18,17 @@ from greywhale.files.log.reader import Log
 
 # A log with more than this is cut down to it, s. Identifying takes a time that grows with the length; after this a log
 # that moves all joints tells little more.
-MOST_S = 60.0
+MOST_USED_S = 60.0
 _PIECE_S = 5.0
 # Readings are averaged over this time, s, so that speed is not noise.
 _STEP_S = 0.02
 # Slower than this (rad/s) at more than this voltage (V), a joint holds still against it.
 _STILL_RAD_S, _PUSHED_V = 0.05, 0.3
 # A longer spacing of rows, in periods, is a gap.
-_GAP = 1.5
+_GAP_PERIODS = 1.5
 
 
-def informative(log: Log, most_s: float = MOST_S) -> Log:
+def informative(log: Log, most_s: float = MOST_USED_S) -> Log:
     """The pieces of a log that show most, `most_s` in all, with gaps between them; a log that is shorter as it is."""
     if len(log.time) < 2 or log.time[-1] - log.time[0] <= most_s:
         return log
@@ -55,7 +55,7 @@ def _pieces(log: Log) -> list[slice]:
     steps = np.diff(log.time)
     period = float(np.median(steps))
     length = max(2, round(_PIECE_S / period))
-    joined = (steps <= _GAP * period) & wanted[1:] & wanted[:-1]
+    joined = (steps <= _GAP_PERIODS * period) & wanted[1:] & wanted[:-1]
     edges = np.flatnonzero(np.diff(np.concatenate(([False], joined, [False])).astype(np.int8)))
     return [
         slice(begin, begin + length)

@@ -11,10 +11,10 @@ from greywhale.protocol.firmware import TICK_S
 # So many times as large as in s is a time in another unit.
 TIME_UNITS = {"ms": 1e3, "us": 1e6, "ns": 1e9, "min": 1 / 60, "h": 1 / 3600}
 # Fewer rows may be apart as they like, by chance.
-_ENOUGH = 50
+_ENOUGH_ROWS = 50
 # How far the usual time between rows may be from what the header says, as a factor.
-_MORE, _LESS = 1.5, 0.7
-_CLOSE = 1.05
+_LONGER_RATIO, _SHORTER_RATIO = 1.5, 0.7
+_SAME_UNIT_RATIO = 1.05  # so far a spacing may be from another unit's and still be in it
 # Rows of a log are usually between these, s: no arm is seen at longer ones, and no board is quicker.
 USUAL_S = (2e-4, 0.2)
 # A motion of more than this (rad) that never exceeds this speed (rad/s) is a thousandth of what a hand does.
@@ -27,12 +27,12 @@ _TURN_RAD, _MOST_DEG = 6.3, 1000.0
 
 def refuse_other_spacing(name: str, every_ticks: int | None, dropped: int, time_s: Floats) -> None:
     """Refuse times that contradict the header's every_ticks, unless its dropped samples explain what is missing."""
-    if every_ticks is None or len(time_s) < _ENOUGH:
+    if every_ticks is None or len(time_s) < _ENOUGH_ROWS:
         return
     stated = every_ticks * TICK_S
     usual, length = float(np.median(np.diff(time_s))), float(time_s[-1] - time_s[0])
     missing = length / stated - len(time_s)
-    if _LESS <= usual / stated <= _MORE or (usual > stated and dropped >= missing / 2):
+    if _SHORTER_RATIO <= usual / stated <= _LONGER_RATIO or (usual > stated and dropped >= missing / 2):
         return
     unit = _unit_of(usual / stated)
     cause = "take the log as it was recorded, or correct its header"
@@ -47,7 +47,7 @@ def refuse_other_spacing(name: str, every_ticks: int | None, dropped: int, time_
 def doubt_spacing(time_s: Floats) -> tuple[str, ...]:
     """A doubt about the times of a log whose header says nothing of them, as a sentence that follows its name."""
     usual = float(np.median(np.diff(time_s)))
-    if len(time_s) < _ENOUGH or USUAL_S[0] <= usual <= USUAL_S[1]:
+    if len(time_s) < _ENOUGH_ROWS or USUAL_S[0] <= usual <= USUAL_S[1]:
         return ()
     unit = "ms" if usual > USUAL_S[1] else "min"
     return (f"its rows are {_spacing(usual)} apart, which no measure of an arm is made for; is time_s in {unit}?",)
@@ -78,7 +78,9 @@ def perhaps_degrees(largest: float) -> str:
 
 def _unit_of(ratio: float) -> str:
     """The unit of times that are so many times as large as they should be, or ""."""
-    return next((unit for unit, factor in TIME_UNITS.items() if 1 / _CLOSE < ratio / factor < _CLOSE), "")
+    return next(
+        (unit for unit, factor in TIME_UNITS.items() if 1 / _SAME_UNIT_RATIO < ratio / factor < _SAME_UNIT_RATIO), ""
+    )
 
 
 def _spacing(seconds: float) -> str:

@@ -24,11 +24,11 @@ from greywhale.files.log.parameters import lines_of
 from greywhale.protocol.joints import ALL, listed
 
 _ROW = ",".join(["%.6f"] * 9 + ["%.3f"] * 4) + ",%s\n"  # s, rad, V
-_ROWS_PER_WRITE = 256
+_ROWS_PER_WRITE = 256  # rows that wait for the file: a quarter of a second at most
 # What is known only at the end: the header keeps so many characters free for each number or word, and for the reason.
-_ROOM = 12
-_REASON = 320
-_CHECK_ROOM = 40
+_VALUE_ROOM = 12
+_REASON_ROOM = 320
+_CHECK_ROOM = 40  # for the number of rows and their CRC
 
 
 class LogWriter:
@@ -182,10 +182,10 @@ class LogWriter:
         lines = [f"# {TITLE}", *(f"# {key}: {value}" for key, value in facts.items() if value is not None)]
         if origin.table is not None:
             lines += [f"# {line}" for line in lines_of(origin.table)]
-        lines += [f"# dropped_samples: {self.dropped:<{_ROOM}d}", f"# recording: {ending:<{_ROOM}}"]
+        lines += [f"# dropped_samples: {self.dropped:<{_VALUE_ROOM}d}", f"# recording: {ending:<{_VALUE_ROOM}}"]
         if self._states_gaps:
-            lines.append(f"# gaps: {cut(_gaps(self.gaps), _REASON):<{_REASON}}")
-        lines.append(f"# ended_by: {cut(reason, _REASON):<{_REASON}}")
+            lines.append(f"# gaps: {cut(_gaps(self.gaps), _REASON_ROOM):<{_REASON_ROOM}}")
+        lines.append(f"# ended_by: {cut(reason, _REASON_ROOM):<{_REASON_ROOM}}")
         text = "\n".join(lines).encode("ascii", "replace").decode("ascii")
         check = check_text(self._kept, self._crc, facts_of(line[1:] for line in text.split("\n"))) if checked else ""
         return f"{text}\n# {KEY}: {check:<{_CHECK_ROOM}}\n".encode("ascii")

@@ -16,7 +16,7 @@ import numpy as np
 from greywhale.base.types import Controllers, Floats
 from greywhale.optimise import Optimiser, create
 from greywhale.optimise.box import latin_hypercube
-from greywhale.optimise.cma_es import SIGMA, CmaEs
+from greywhale.optimise.cma_es import START_SIGMA_SHARE, CmaEs
 from greywhale.optimise.optimiser import PACK
 from greywhale.protocol.firmware import JOINTS
 from greywhale.tune.search.journal import TuningJournal
@@ -180,7 +180,7 @@ def _begin(
     box: dict[str, Any] = {"lower": space.lower, "upper": space.upper, "budget": budget, "seed": source}
     if method == CmaEs.name:
         # It makes its own pack around the start.
-        return create(method, **box, start=start, sigma=SIGMA if sigma is None else sigma)
+        return create(method, **box, start=start, sigma=START_SIGMA_SHARE if sigma is None else sigma)
     if sigma is not None:
         start = _surround(space, start, sigma, source, pack)
     return create(method, **box, start=start, pack=pack)
