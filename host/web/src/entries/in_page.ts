@@ -28,7 +28,7 @@ import type { BenchData } from "../sources/in_page/messages";
 import { PageTuner, type TunerParts } from "../sources/in_page/tuner";
 import { SerialBoard } from "../sources/serial/board";
 
-/** What the page is made of. */
+/** The parts that the page is made of. */
 export type Parts = {
   readonly code: ArrayBuffer;
   readonly data: BenchData;
@@ -53,7 +53,7 @@ function atPort(): boolean {
   return new URLSearchParams(location.search).get("board") === "port";
 }
 
-/** Which board the page shows. Another one begins anew, so that nothing of the one before is taken for its own. */
+/** The board that the page shows. Another one begins anew, so that nothing of the one before is taken for its own. */
 function choice(): HTMLElement {
   const box = select("Board", [["", "Bench in this page"], ["port", "Board at a port"]], (board) => {
     location.href = `${location.pathname}${board && `?board=${board}`}`;

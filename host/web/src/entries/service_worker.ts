@@ -39,7 +39,7 @@ async function takeOver(): Promise<void> {
   await worker.clients.claim();
 }
 
-/** What a browser refuses to open, read or fill is no cache: the network answers without it. */
+/** Answers from the cache, else from the network; a cache that the browser does not open, read or fill is none. */
 async function answer(request: Request): Promise<Response> {
   const cache = await caches.open(CACHE).catch(() => null);
   const kept = await cache?.match(request, { ignoreSearch: true }).catch(() => undefined);

@@ -6,7 +6,7 @@ import { advice, keyPath, quoted, short } from "./words";
 
 type Problem = { readonly path: Path; readonly kind: "unknown" | "count" | "other"; readonly text: string };
 
-/** What a value should be: it tells what is wrong with one that is not. */
+/** A check of a value: it names the fault of one that is not as it should be. */
 export type Shape = (value: Toml, path: Path) => Problem[];
 
 export function isTable(value: Toml | undefined): value is TomlTable {

@@ -35,7 +35,7 @@ function entries(found: TomlTable, joint: number): Entry[] {
   ];
 }
 
-/** What is wrong with a joint's numbers for the firmware. */
+/** The fault of a joint's numbers for the firmware. */
 function unfit(found: TomlTable): string {
   for (const { key, parameter: { minimum, maximum, lsb }, value, scale } of entries(found, 0)) {
     const [low, high] = [minimum * lsb, maximum * lsb];
@@ -91,7 +91,7 @@ export function controllerIn(file: NamedText): ReadonlyMap<string, number> {
   return raw;
 }
 
-/** What is not in a controller: how far a voltage moves each joint. */
+/** The values that are not in a controller: the travel of each joint for a voltage. */
 function others(data: TomlTable): [Parameter, number][] {
   const travel = data["travel"] as TomlTable | undefined;
   const found: [Parameter, Toml][] = data["stall_volts"] === undefined ? [] : [[TABLE.named("stall_volts"), data["stall_volts"]]];

@@ -13,7 +13,7 @@ export function rawOf({ name, lsb, unit, minimum, maximum, nonzero }: Parameter,
   throw new LinkError(`${name} is ${short(value)}${of}, which is out of range; ${advice}`);
 }
 
-/** The same, refused where rounding would change it noticeably. */
+/** A raw value, refused where rounding would change it noticeably. */
 export function rawAsGiven(parameter: Parameter, value: number): number {
   const raw = rawOf(parameter, value);
   const { name, lsb, unit } = parameter;
@@ -25,7 +25,7 @@ export function rawAsGiven(parameter: Parameter, value: number): number {
   return raw;
 }
 
-/** What `act` gives; its sentence begins with the file's name. */
+/** The result of `act`; its sentence begins with the file's name. */
 export function inFile<Value>(file: string, act: () => Value): Value {
   try {
     return act();

@@ -10,7 +10,7 @@ import { cut, keyPath } from "./words";
 
 const LONGEST = 1 << 22;
 const LARGEST = 1n << 63n;
-// How the first line of a log or a motion begins, and one of a TOML file: a key, or a table's name.
+// The beginnings of the first line of a log or a motion, and of one of a TOML file: a key, or a table's name.
 const BEGINS_CSV = /^"?time_s"?[,;\t]/;
 const BEGINS_TOML = /^[ \t]*(("[^"]*"|'[^']*'|[A-Za-z0-9_-]+)[ \t]*[.=]|\[\[?[ \t]*["'A-Za-z0-9_-])/;
 

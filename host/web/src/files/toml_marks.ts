@@ -1,4 +1,4 @@
-// What smol-toml takes and the host's reader does not: TOML 1.1, and what would keep a parser busy.
+// Refuses what smol-toml takes and the host's reader does not: TOML 1.1, and what would keep a parser busy.
 
 const DEEPEST = 24;
 // Strings and comments as a whole, so that nothing in them counts, and all else one by one; as greywhale/base/formats has it.

@@ -1,4 +1,4 @@
-// What a TOML file can hold, and where in it something stands.
+// Types of the things that a TOML file can hold, and of their places in it.
 
 export type Toml = string | number | bigint | boolean | Date | readonly Toml[] | TomlTable;
 export type TomlTable = { readonly [key: string]: Toml };

@@ -62,7 +62,7 @@ export function keyPath(path: Path): string {
   return cut(words.join(""), LONGEST_PATH) || "the file";
 }
 
-/** What to do about an unknown key: the one that was probably meant, if there is one. */
+/** Advice about an unknown key: the one that was probably meant, if there is one. */
 export function advice(key: string, known: readonly string[]): string {
   const [best] = known.map((name) => ({ name, score: likeness(name, key) })).filter(({ score }) => score >= ALIKE)
     .sort((a, b) => b.score - a.score || (a.name < b.name ? 1 : -1));
@@ -73,7 +73,7 @@ function likeness(one: string, other: string): number {
   return (2 * matching(one, other)) / (one.length + other.length);
 }
 
-/** How many letters match: the longest common piece, and the same to its left and to its right. */
+/** The number of letters that match: the longest common piece, and again to its left and to its right. */
 function matching(one: string, other: string): number {
   for (let size = Math.min(one.length, other.length); size; size--) {
     for (let at = 0; at + size <= one.length; at++) {

@@ -15,7 +15,7 @@ type Waiting = {
   timer?: ReturnType<typeof setTimeout>; // of the next attempt
 };
 
-/** What comes without being asked for: samples, and the hello of a board that restarted. */
+/** Messages that come without being asked for: samples, and the hello of a board that restarted. */
 export type Unasked = {
   sample(payload: Uint8Array): void;
   hello(reply: HelloReply): void;

@@ -74,7 +74,7 @@ export class Enumeration<Name extends string> {
     this.is = numbers as Record<Name, number>;
   }
 
-  /** What a received number means; a number of another firmware is told as that. */
+  /** The meaning of a received number; a number of another firmware is named as such. */
   of(value: number): Word {
     return this.words.get(value) ?? {
       value,

@@ -9,7 +9,7 @@ export function namedText(name: string, bytes: Uint8Array): NamedText {
   return spoiltAt < 0 ? { name, text } : { name, text, spoiltAt };
 }
 
-/** Where the first letter begins that is no UTF-8, by what came of it; -1 for none. */
+/** The place of the first letter that is no UTF-8, by what came of it; -1 for none. */
 function firstSpoilt(bytes: Uint8Array, again: Uint8Array): number {
   let at = bytes.findIndex((byte, place) => byte !== again[place]);
   if (at < 0 && bytes.length === again.length) return -1;

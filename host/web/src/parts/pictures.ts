@@ -1,4 +1,4 @@
-// When the page draws: once for each picture of the screen, where that is quick.
+// Times the page's drawing: once for each picture of the screen, where that is quick.
 
 const A_PICTURE_MS = 17; // of a screen of 60 Hz
 

@@ -1,4 +1,4 @@
-// What a person is told of an error.
+// The sentence that a person gets for an error.
 
 export function sentenceOf(error: unknown): string {
   return error instanceof Error ? error.message : String(error);

@@ -4,7 +4,7 @@
 export class Store {
   constructor(private readonly open: () => Storage | null) {}
 
-  /** Whether the browser lets this page keep anything at all. */
+  /** True if the browser lets this page keep anything at all. */
   get allowed(): boolean {
     return attempt(() => this.opened().getItem("") !== undefined, false);
   }
@@ -13,7 +13,7 @@ export class Store {
     return attempt(() => this.opened().getItem(key), null);
   }
 
-  /** Whether it is kept. */
+  /** True if it is kept. */
   write(key: string, text: string): boolean {
     return attempt(() => {
       this.opened().setItem(key, text);
@@ -54,7 +54,7 @@ function attempt<Value>(act: () => Value, otherwise: Value): Value {
   }
 }
 
-/** What stays until the person clears it. */
+/** Storage that stays until the person clears it. */
 export const browserStore = new Store(() => localStorage);
-/** What stays as long as this tab. */
+/** Storage that stays as long as this tab. */
 export const tabStore = new Store(() => sessionStorage);

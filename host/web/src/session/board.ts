@@ -1,8 +1,8 @@
-// What every view knows of a board: send a frame; frames arrive. No view knows where they come from.
+// The board of every view: send a frame; frames arrive. No view knows where they come from.
 
 export type LinkState = { readonly open: boolean; readonly port: string; readonly sentence: string };
 
-/** Who may change what the board does; `verb` is what uses the board now at the host, in the place of any page. */
+/** The client that may change what the board does; `verb` is what uses the board now at the host, in the place of any page. */
 export type DriverState = { readonly you: boolean; readonly free: boolean; readonly verb: string | null };
 
 export type BoardListener = {

@@ -51,7 +51,7 @@ export function fuzzify(x: number, n: number, left: number, right: number, p: nu
 export type Inference = {
   readonly error: Memberships;
   readonly change: Memberships;
-  /** How much each rule fires, rows by the error's set, columns by the change's. */
+  /** The strength of each rule, rows by the error's set, columns by the change's. */
   readonly rules: readonly (readonly number[])[];
   readonly u: number; // -1..1; 0 when no rule fires
 };
@@ -83,7 +83,7 @@ function clamp(value: number, limit: number): number {
   return Math.max(-limit, Math.min(limit, value));
 }
 
-/** Why a board would refuse these settings, as a value of Refusal: the firmware's checks in their order. */
+/** The reason why a board would refuse these settings, as a value of Refusal: the firmware's checks in their order. */
 export function refusal(s: Settings, periodMs: number): number {
   if (periodMs < 1 || periodMs > LONGEST_PERIOD_MS) return Refusal.is.period;
   if (s.ce_ticks < 1 || s.ce_ticks > MOST_CE_TICKS) return Refusal.is.range;

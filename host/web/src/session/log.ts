@@ -8,7 +8,7 @@ import { JOINTS, TICKS_A_SECOND, type Quantity, type Samples } from "./samples";
 const COLUMNS = ["leader", "follower", "voltage"] as const satisfies readonly Quantity[];
 const DIGITS: Readonly<Record<(typeof COLUMNS)[number], number>> = { leader: 6, follower: 6, voltage: 3 };
 
-/** What the header says of where the samples come from; `raw` is the board's parameter table, null when it is not read. */
+/** The header's facts on the origin of the samples; `raw` is the board's parameter table, null when it is not read. */
 export type Origin = { readonly hello: HelloReply | null; readonly raw: readonly number[] | null };
 
 /** The log of the samples from `from` to before `to`. */

@@ -1,4 +1,4 @@
-// What a chart draws of a span: the exact samples where there is room for them, else the extremes of each column.
+// The picture that a chart draws of a span: the exact samples where there is room for them, else the extremes of each column.
 
 import { BLOCK, COUNT, QUANTITIES, TICKS_A_SECOND, TRACES, JOINTS, type Samples } from "./samples";
 

@@ -1,12 +1,12 @@
-// What a view knows of a board that a person connects by hand: open its port, let it go, flash it.
+// The interface of a board that a person connects by hand: open its port, let it go, flash it.
 
 import type { NamedText } from "../parts/named_text";
 
-/** How far something long is: what is done, and which share of it. */
+/** The progress of something long: its step, and the share that is done. */
 export type Report = (stage: string, share: number) => void;
 
 export interface BoardPort {
-  /** Why this browser reaches no port, in a sentence; empty where it does. */
+  /** The reason why this browser reaches no port, in a sentence; empty where it does. */
   readonly missing: string;
   /** Opens the port that was chosen last, or lets the person choose; `restart` restarts the board for sure. */
   connect(how: { readonly restart: boolean; readonly choose: boolean }): Promise<void>;

@@ -120,12 +120,12 @@ export class Samples {
     return this.count(number, traceOf(quantity, joint)) * COUNT[quantity];
   }
 
-  /** The same as a table shows it. */
+  /** That number as a table shows it. */
   text(number: number, quantity: Quantity, joint: number): string {
     return this.value(number, quantity, joint).toFixed(quantity === "voltage" ? 3 : 4);
   }
 
-  /** What the newest sample has of each joint, in its unit; 0 before any. */
+  /** The newest sample's values of each joint, in their unit; 0 before any. */
   newest(quantity: Quantity): number[] {
     return Array.from({ length: JOINTS }, (_, joint) => (this.end ? this.value(this.end - 1, quantity, joint) : 0));
   }

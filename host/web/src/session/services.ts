@@ -1,4 +1,4 @@
-// What views know of a host beside the board: files, predictions, verbs, a bench. Without one they hide what needs it.
+// The services of a host beside the board: files, predictions, verbs, a bench. Without one views hide what needs it.
 
 export type NamedFile = { readonly name: string; readonly kind: string };
 
@@ -33,11 +33,11 @@ export type Range = { readonly minimum: number; readonly maximum: number; readon
 export const SIZES = ["supply", "load", "noise", "play", "speed"] as const;
 export type Size = (typeof SIZES)[number];
 
-/** What there is to change on a simulated bench; what a bench lacks is left out. */
+/** The things that can be changed on a simulated bench; what a bench lacks is left out. */
 export type BenchControls = {
   readonly leader: { readonly minimum: readonly number[]; readonly maximum: readonly number[] };
   readonly faults: readonly { readonly name: string; readonly places: readonly string[]; readonly description: string }[];
-  /** What is broken now, as it is wished; left out by a bench that does not tell. */
+  /** The faults of now, as they are wished; left out by a bench that does not tell. */
   readonly broken?: readonly string[];
 } & { readonly [size in Size]?: Range };
 
@@ -70,12 +70,12 @@ export type Verb = {
   readonly verb: string;
   readonly help: string;
   readonly board: boolean;
-  /** Whether it needs the port itself, with or without a board at it. */
+  /** True if it needs the port itself, with or without a board at it. */
   readonly takes_port: boolean;
   readonly arguments: readonly Argument[];
 };
 
-/** What a verb may answer with: JSON. */
+/** The JSON that a verb may answer with. */
 export type Json = null | boolean | number | string | readonly Json[] | { readonly [key: string]: Json };
 
 export type Job = {
@@ -103,7 +103,7 @@ export interface Jobs {
   listen(heard: (job: Job) => void): void;
 }
 
-/** How far a search for controllers is: the best cost of each joint, now and after each batch. */
+/** The progress of a search for controllers: the best cost of each joint, now and after each batch. */
 export type Searched = {
   readonly evaluations: number;
   readonly budget: number;
@@ -111,7 +111,7 @@ export type Searched = {
   readonly curve: readonly (readonly [evaluations: number, cost: readonly number[]])[];
 };
 
-/** What a search found, and how the arm then follows a hand and did before: rows of four joints, rad. */
+/** The result of a search, and how the arm then follows a hand and did before: rows of four joints, rad. */
 export type Tuned = {
   readonly after: readonly (readonly number[])[]; // four joints' settings, in the order of the table
   /** Joints that were not steady enough as they were found: they have less voltage or integral, or what they had. */
@@ -138,7 +138,7 @@ export interface Services {
   log(file: string): Promise<Uint8Array>;
   /** Raw values by parameter name of a built-in controller or a file. */
   controller(file: string): Promise<Readonly<Record<string, number>>>;
-  /** What the model does with a whole parameter set in raw values. */
+  /** Predicts what the model does with a whole parameter set in raw values. */
   predict(raw: readonly number[], board: number): Promise<Prediction>;
   arm(): Promise<ArmDescription>;
 }

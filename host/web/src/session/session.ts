@@ -1,4 +1,4 @@
-// What all views share of one board: its samples, its words, its parameters, and the right to change them.
+// Everything that views share of one board: its samples, its words, its parameters, and the right to change them.
 
 import type { Board, DriverState, LinkState } from "./board";
 import { LinkClient } from "../link/client";
@@ -41,11 +41,11 @@ export class Session {
   storedCrc: number | null = null;
   private readonly known = new Map<number, readonly number[]>(); // sets by their CRC
   notice: Notice | null = null;
-  /** Whether a verb counts down before it moves the arm. */
+  /** True while a verb counts down before it moves the arm. */
   counting = false;
-  /** How often a stop was asked for since the page was opened, here or elsewhere. */
+  /** The number of times that a stop was asked for since the page was opened, here or elsewhere. */
   stopsAsked = 0;
-  /** Whether the samples from before are here; until then new ones wait. */
+  /** True once the samples from before are here; until then new ones wait. */
   private waiting: Uint8Array[] | null = [];
   private readonly client: LinkClient;
   private asking = false;
@@ -87,7 +87,7 @@ export class Session {
     return this.link.open && (this.state === State.is.soft_start || this.state === State.is.following);
   }
 
-  /** Whether the board has never stored a set, so that it starts with its defaults. */
+  /** True if the board has never stored a set, so that it starts with its defaults. */
   get storesNothing(): boolean {
     return this.status?.saves === 0;
   }
@@ -140,12 +140,12 @@ export class Session {
     this.board.drive();
   }
 
-  /** Why this page leaves a simulated bench alone, in a sentence: another one drives its arm. Else empty. */
+  /** The reason why this page leaves a simulated bench alone, in a sentence: another one drives its arm. Else empty. */
   get whyNotBench(): string {
     return this.link.open && !this.driver.free ? this.whyNotDrive : "";
   }
 
-  /** Why this page may not change what the board does, in a sentence; empty where it may. */
+  /** The reason why this page may not change what the board does, in a sentence; empty where it may. */
   get whyNotDrive(): string {
     if (this.driver.you) return "";
     return this.driver.free
@@ -153,13 +153,13 @@ export class Session {
       : "Another page drives this arm; let go there first.";
   }
 
-  /** The same, and what of the host uses the board in the place of any page. */
+  /** That reason, or what of the host uses the board in the place of any page. */
   get whyNotChange(): string {
     const { verb } = this.driver;
     return verb === null ? this.whyNotDrive : `\`greywhale ${verb}\` uses the board; stop it first, or wait for its end.`;
   }
 
-  /** Why this page cannot enable the motors now, in a sentence; empty where it can. */
+  /** The reason why this page cannot enable the motors now, in a sentence; empty where it can. */
   get whyNotEnable(): string {
     if (!this.link.open) return "No board is there.";
     if (this.faulty) return "A fault keeps the motors off; do what it says, and clear it.";
@@ -291,7 +291,7 @@ export class Session {
     }
   }
 
-  /** Whether an earlier tick is that of a board which has started anew, and not one that the history had as well. */
+  /** True if an earlier tick is that of a board which has started anew, and not one that the history had as well. */
   private isNewStart(tick: number): boolean {
     if (!this.startTold && tick > this.samples.lastTick - LONGEST_DELAY_TICKS) return false;
     this.startTold = false;

@@ -1,4 +1,4 @@
-// How a page comes by its server's token: for the ticket in its address, from its own tab, or from another page that is open.
+// Gets a page its server's token: for the ticket in its address, from its own tab, or from another page that is open.
 
 const CHANNEL = "greywhale-token";
 const NAME = "greywhale-token:";

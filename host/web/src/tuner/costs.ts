@@ -1,4 +1,4 @@
-// What candidates cost, as `greywhale tune` prices them: greywhale/tune/search/objective.py and judge/margins.py say why.
+// Prices candidates as `greywhale tune` does: greywhale/tune/search/objective.py and judge/margins.py say why.
 
 import type { Controllers, Drill, TunerData } from "./data";
 import { ALL, TICK_S, type Following, type TunerModule } from "./module";

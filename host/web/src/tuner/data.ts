@@ -1,4 +1,4 @@
-// What the tuner gets of greywhale (tools/site/tuner_data.py writes it), and what the page and its worker say to each other.
+// The data that the tuner gets of greywhale (tools/site/tuner_data.py writes it), and the messages of the page and its worker.
 
 import type { Searched, Tuned } from "../session/services";
 

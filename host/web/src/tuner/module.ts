@@ -108,7 +108,7 @@ export class TunerModule implements Elementary {
       ({ mse: mse!, itae: itae!, itau: itau!, rattle: rattle!, swings: swings!, lost: lost !== 0 }));
   }
 
-  /** The same between two ticks. */
+  /** The unrest of each candidate between two ticks. */
   resting(experiment: number, rows: number, [first, last]: readonly [number, number], band: number): Resting[][] {
     const { swing, window } = this.data.rattle;
     this.call("resting", experiment, first, last, band, swing, window);

@@ -1,4 +1,4 @@
-// What is searched, as points of a box, and how a point becomes settings of the board (greywhale/tune/search/space.py).
+// The box that is searched, and the settings of the board at each of its points (greywhale/tune/search/space.py).
 
 import type { Row, SearchData, Variable } from "./data";
 import { clip, type Bounds, type Elementary } from "./wolf_whale";
@@ -40,7 +40,7 @@ export class Space {
     });
   }
 
-  /** The same law with the gains that are held fast: the sets are stretched instead. */
+  /** An equal law with the gains that are held fast: the sets are stretched instead. */
   private restretched(row: Row): Row {
     const { stretch, least_width, set_unit } = this.search;
     const stretched = [...row];

@@ -1,4 +1,4 @@
-// Whether a joint comes to rest, and still would on a slightly different arm (greywhale/tune/judge/margins.py).
+// Judges if a joint comes to rest, and still would on a slightly different arm (greywhale/tune/judge/margins.py).
 
 import type { Controllers, Rests, TunerData } from "./data";
 import { TICK_S, type TunerModule } from "./module";
@@ -56,7 +56,7 @@ export class Unrests {
   }
 }
 
-/** What must hold as it did before: every scenario but the softer teeth, and quiet at rest (tune/judge/standard.py). */
+/** The scenarios that must hold as before: every one but the softer teeth, and quiet at rest (tune/judge/standard.py). */
 export class Standard {
   private readonly judge: Unrests;
   private readonly held: Scenarios;

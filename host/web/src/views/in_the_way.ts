@@ -1,4 +1,4 @@
-// What stands in the way of the motors, under the header of every view: a fault with its remedy, or who else has the arm.
+// Tells what stands in the way of the motors, under the header of every view: a fault with its remedy, or who else has the arm.
 
 import { faultSentence } from "../link/refusal";
 import { button, el, setText } from "../parts/dom";

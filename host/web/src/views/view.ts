@@ -1,11 +1,11 @@
-// What the page knows of a view: its element, and when to draw.
+// The interface of a view: its element, and when to draw.
 
 import { el } from "../parts/dom";
 
 export type View = {
   readonly name: string;
   readonly element: HTMLElement;
-  /** Whether it shows something without a board. */
+  /** True if it shows something without a board. */
   readonly withoutBoard?: boolean;
   /** Called when the view comes to the front, before it is drawn. */
   enter?(): void;

@@ -44,7 +44,7 @@ export class BenchLoop {
     return this.module.tick();
   }
 
-  /** Whether the board has started anew since this was asked last; then nobody renews a lease. */
+  /** True if the board has started anew since this was asked last; then nobody renews a lease. */
   restarted(): boolean {
     const starts = this.module.call("starts");
     if (starts === this.starts) return false;
@@ -103,7 +103,7 @@ export class BenchLoop {
     if (speed !== undefined) this.speed = within("speed", "times", speed, SPEED);
   }
 
-  /** Where a person's hand is who reaches here and there, and back again, for ever. */
+  /** The place of a person's hand that reaches here and there, and back again, for ever. */
   private reaching(seconds: number): number[] {
     const { hz, rows } = this.data.reaches;
     const last = rows.length - 1;

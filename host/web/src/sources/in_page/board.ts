@@ -139,12 +139,12 @@ export class PageBoard implements Board, BenchActions {
     if (fault === null) this.sizes.supply = this.data.supply.value; // mended as well
   }
 
-  /** What a size may be, and what it is on a fresh bench. */
+  /** The range of a size, and its value on a fresh bench. */
   private range(size: Size): Range {
     return size === "speed" ? SPEED : this.data[size];
   }
 
-  /** What would bring a fresh bench to where this one is, its leader being at these angles now. */
+  /** The wishes that would bring a fresh bench to where this one is, its leader being at these angles now. */
   condition(leader: readonly number[]): { readonly sizes: readonly BenchWish[]; readonly acts: readonly BenchWish[] } {
     const led = this.led === "held" ? leader : this.led;
     return {

@@ -1,4 +1,4 @@
-// How many ticks are due by the wall clock. What a busy machine missed is made up for, as a second of ticks takes some
+// Counts the ticks that are due by the wall clock. What a busy machine missed is made up for, as a second of ticks takes some
 // milliseconds; one that is too slow falls behind.
 
 const GIVE_UP_MS = 1000;

@@ -9,7 +9,7 @@ const ASIDE = "greywhale-eeprom-damaged";
 
 export type Kept = { readonly content: Uint8Array | null; readonly sentence: string };
 
-/** What the browser has kept, and a sentence where something is wrong with it. */
+/** The content that the browser has kept, and a sentence where something is wrong with it. */
 export function keptEeprom(store: Store): Kept {
   if (!store.allowed) {
     return { content: null, sentence: "This browser keeps nothing for this page: what the board stores ends with it." };

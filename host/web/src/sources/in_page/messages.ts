@@ -1,4 +1,4 @@
-// What the page and the worker with its bench say to each other, and what a bench is made of.
+// Messages between the page and the worker with its bench, and the parts of a bench.
 
 import type { ArmDescription, BenchControls, BenchWish, Range } from "../../session/services";
 

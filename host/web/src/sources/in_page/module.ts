@@ -57,7 +57,7 @@ export class BenchModule {
     this.call("lead");
   }
 
-  /** Where the leader arm is, rad. */
+  /** The angles of the leader arm, rad. */
   leader(): number[] {
     this.call("look");
     return Array.from(this.numbers().subarray(LEADER_AT, LEADER_AT + 4));

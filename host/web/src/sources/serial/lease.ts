@@ -10,7 +10,7 @@ const RENEW = encodeFrame(RenewRequest.type, 0, RenewRequest.pack({ lease_ms: LE
 const AT = { tick: Sample.place("tick").at, state: Sample.place("state").at };
 
 export class Lease {
-  /** Whether the board sends samples since it started, as far as was seen. */
+  /** True if the board sends samples since it started, as far as was seen. */
   samples = false;
   private wanted = false; // by the page, until the motors go off
   private moved = false; // whether they have been seen on since

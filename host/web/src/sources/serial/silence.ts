@@ -3,7 +3,7 @@
 export class Silence {
   private timer = 0;
 
-  /** What to do after so many ms, in their order. */
+  /** The things to do after so many ms, in their order. */
   constructor(private readonly stages: readonly (readonly [ms: number, act: () => void])[]) {}
 
   /** Something came, or is expected from now on. */

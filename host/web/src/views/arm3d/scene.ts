@@ -112,7 +112,7 @@ export class ArmScene {
     this.arcs.push(arc);
   }
 
-  /** Whether the browser has taken the graphics away. */
+  /** True if the browser has taken the graphics away. */
   get lost(): boolean {
     return this.renderer.getContext().isContextLost();
   }
@@ -223,7 +223,7 @@ function paintLinks(robot: Object3D, material: MeshStandardMaterial, others: rea
   });
 }
 
-/** What draws on a canvas, null where the browser lacks or forbids it. */
+/** The renderer of a canvas, null where the browser lacks or forbids it. */
 function contextOf(canvas: HTMLCanvasElement): WebGL2RenderingContext | null {
   try {
     return canvas.getContext("webgl2", { antialias: true, alpha: true });

@@ -18,7 +18,7 @@ export function shareOf(limits: Limits, joint: number, angle: number): number {
   return within((angle - low) / (limits.maximum[joint]! - low));
 }
 
-/** Where a pointer is in a picture: shares from its left and from its bottom. */
+/** The place of a pointer in a picture: shares from its left and from its bottom. */
 export function pointed(picture: Element, { clientX, clientY }: PointerEvent): [across: number, up: number] {
   const box = picture.getBoundingClientRect();
   return [within((clientX - box.left) / box.width), within(1 - (clientY - box.top) / box.height)];

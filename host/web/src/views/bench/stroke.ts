@@ -1,4 +1,4 @@
-// What a person draws of one joint: an angle at each column of a picture, where something is drawn.
+// A person's drawing for one joint: an angle at each column of a picture, where something is drawn.
 
 export class Stroke {
   /** Angles in the order of the columns; null where nothing is drawn yet. */

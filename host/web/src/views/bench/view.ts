@@ -32,7 +32,7 @@ export class BenchView implements View {
     session.changed.on(() => this.show());
   }
 
-  /** Who only watches leaves the bench alone while another page drives. */
+  /** A person who only watches leaves the bench alone while another page drives. */
   private show(): void {
     const { whyNotBench } = this.session;
     this.element.disabled = whyNotBench !== "";

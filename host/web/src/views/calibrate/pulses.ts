@@ -10,12 +10,12 @@ import { examineMotor, type Motor } from "./motors";
 
 const LEASE_MS = 160; // soft start is 100 of it
 const WAY_STEPS = 82; // 0.08 rad, where a pulse sends its joint
-const FARTHEST_RAD = 0.16;
+const FARTHEST_RAD = 0.16; // of a joint from where it should be: twice a pulse's way
 const STILL_TICKS = 200;
 const STILL_RAD = 0.008; // an arm that still falls would hide a weak pulse
 const PATIENCE_MS = 5000;
-const SETTLE_TICKS = 250;
-const STIFF = 64;
+const SETTLE_TICKS = 250; // watched after the lease, while the joint settles
+const STIFF_KP = 64; // so that a small error already gets the whole voltage of the pulse
 const LOOK_MS = 20;
 const ALL = Array.from({ length: JOINTS }, (_, joint) => joint);
 
@@ -30,7 +30,7 @@ export function pulseSet(calibrated: readonly number[], joint: number, volts: nu
   for (const [name, value] of Object.entries(common)) set(name, value);
   const { maximum, lsb } = TABLE.named("joint0.limit_max");
   for (const other of ALL) {
-    const own = { kp: STIFF, kd: 0, ki: 0, ku_mv: other === joint ? 1000 * volts : 0, limit_min: -maximum * lsb, limit_max: maximum * lsb };
+    const own = { kp: STIFF_KP, kd: 0, ki: 0, ku_mv: other === joint ? 1000 * volts : 0, limit_min: -maximum * lsb, limit_max: maximum * lsb };
     for (const [name, value] of Object.entries(own)) set(`joint${other}.${name}`, value);
   }
   return raw;
@@ -103,7 +103,7 @@ export class Trial {
     return Array.from({ length: samples.end - from }, (_, at) => samples.count(from + at, traceOf("follower", joint)));
   }
 
-  /** Whether the follower has rested for a while since a sample; it may have been falling since the last pulse. */
+  /** True if the follower has rested for a while since a sample; it may have been falling since the last pulse. */
   private isStill(from: number): boolean {
     const begin = this.session.samples.end - STILL_TICKS;
     return begin >= from && ALL.every((joint) => {

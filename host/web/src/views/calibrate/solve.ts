@@ -8,11 +8,11 @@ import { TABLE } from "../../link/schema";
 import { JOINTS } from "../../session/samples";
 import { FULL_SCALE, type Sweep } from "./sweep";
 
-const COUNT14 = 16; // in a count of the converter
+const COUNT14_PER_COUNT = 16; // in a count of the converter
 const ANGLE_SHIFT = 13; // angle = ((count14 - zero) * scale) >> 13
-const SHORTEST_TRACK = Math.PI;
-const LONGEST_TRACK = 2.5 * Math.PI; // the board takes no longer one
-const LEAST_TURN = 0.3; // rad between two poses: with less, a degree in a hand is much of the scale
+const SHORTEST_TRACK_RAD = Math.PI;
+const LONGEST_TRACK_RAD = 2.5 * Math.PI; // the board takes no longer one
+const LEAST_TURN_RAD = 0.3; // rad between two poses: with less, a degree in a hand is much of the scale
 const SLIPPED_COUNTS = 8; // the same pose twice: 40 mrad of a usual track
 const MOST_APART_RAD = 0.15; // between the arms in the last pose: 9 degrees, more than a hand is wrong by
 const MARGIN_RAD = 0.03; // kept from both ends of what the person showed
@@ -37,10 +37,10 @@ export function potsOf(joints: readonly number[]): number[] {
   return [...joints, ...joints.map((joint) => JOINTS + joint)];
 }
 
-/** What the converter reads, from the angle of a sample in its counts and the set that runs; the middle where there is no potentiometer. */
+/** The converter's reading, from the angle of a sample in its counts and the set that runs; the middle where there is no potentiometer. */
 export function countsOf(angle: number, pot: number, raw: readonly number[]): number {
   const scale = raw[of(pot, "scale").index]!;
-  return scale ? ((angle * 2 ** ANGLE_SHIFT) / scale + raw[of(pot, "zero").index]!) / COUNT14 : FULL_SCALE / 2;
+  return scale ? ((angle * 2 ** ANGLE_SHIFT) / scale + raw[of(pot, "zero").index]!) / COUNT14_PER_COUNT : FULL_SCALE / 2;
 }
 
 /** The calibration from a sweep of each potentiometer and two known poses; fails where they contradict each other. */
@@ -58,11 +58,11 @@ function scaleOf(first: Pose, second: Pose, pot: number, direction: number): num
   const joint = pot % JOINTS;
   const turned = second.angles[joint]! - first.angles[joint]!;
   const moved = second.counts[pot]! - first.counts[pot]!;
-  if (Math.abs(turned) < LEAST_TURN) {
-    throw new LinkError(`The two poses differ by ${Number(turned.toPrecision(2))} rad at joint ${joint}; choose a second pose that differs by ${LEAST_TURN} rad or more at every joint.`);
+  if (Math.abs(turned) < LEAST_TURN_RAD) {
+    throw new LinkError(`The two poses differ by ${Number(turned.toPrecision(2))} rad at joint ${joint}; choose a second pose that differs by ${LEAST_TURN_RAD} rad or more at every joint.`);
   }
   const track = moved ? Math.abs(turned / moved) * FULL_SCALE : Infinity;
-  if (!(track >= SHORTEST_TRACK && track <= LONGEST_TRACK)) {
+  if (!(track >= SHORTEST_TRACK_RAD && track <= LONGEST_TRACK_RAD)) {
     throw new LinkError(`${upperFirst(potName(pot))} read ${fixed(first.counts[pot]!, 0)} and ${fixed(second.counts[pot]!, 0)} in the two poses: `
       + `as if its track had ${Number.isFinite(track) ? fixed((track * 180) / Math.PI, 0) : "inf"} degrees; hold the poses again, and check that its shaft does not slip.`);
   }
@@ -72,7 +72,7 @@ function scaleOf(first: Pose, second: Pose, pot: number, direction: number): num
   return turned / moved;
 }
 
-/** What both arms can reach, without a margin. */
+/** The range that both arms can reach, without a margin. */
 function limitsOf({ zero, scale }: Calibration, sweeps: readonly (Sweep | null)[], joint: number): readonly [number, number] {
   const [leader, follower] = [joint, JOINTS + joint].map((pot) => {
     const { low, high } = sweeps[pot]!;
@@ -95,7 +95,7 @@ export function requireNoSlip(before: Pose, after: Pose): void {
   if (told.length) throw new LinkError(told.join(" "));
 }
 
-/** How far the arms are apart at each joint in use, in rad, in a pose from which nothing was worked out; fails where that is too far. */
+/** The distance of the arms at each joint in use, in rad, in a pose from which nothing was worked out; fails where that is too far. */
 export function apartIn({ zero, scale }: Calibration, { counts }: Pose, joints: readonly number[]): number[] {
   const [leader, follower] = [0, JOINTS].map((arm) => joints.map((joint) => (counts[arm + joint]! - zero[arm + joint]!) * scale[arm + joint]!));
   const apart = leader!.map((angle, place) => Math.abs(follower![place]! - angle));
@@ -110,8 +110,8 @@ export function changesOf({ zero, scale, limits }: Calibration): Map<string, num
   const values = new Map<string, number>();
   const set = (parameter: Parameter, value: number): unknown => values.set(parameter.name, rawOf(parameter, value));
   scale.forEach((size, pot) => {
-    set(of(pot, "zero"), COUNT14 * zero[pot]!);
-    set(of(pot, "scale"), size / COUNT14);
+    set(of(pot, "zero"), COUNT14_PER_COUNT * zero[pot]!);
+    set(of(pot, "scale"), size / COUNT14_PER_COUNT);
   });
   limits.forEach((ends, joint) => ["limit_min", "limit_max"].forEach((key, end) => {
     const parameter = TABLE.named(`joint${joint}.${key}`);

@@ -8,19 +8,19 @@ export const FULL_SCALE = 1023;
 const HALF_SMOOTH = 4; // rows to both sides: a reading that differs from its neighbours for less time is a jump
 const LEAST_COUNTS = 40; // 12 degrees of a usual track: less is no sweep
 const OTHERS_SHARE = 0.5; // of the sweep: another reading that moves as far is moved as well
-const RAIL_COUNTS = 4;
-const CROSSED_FROM = 0.88 * FULL_SCALE; // a pull-down of some ten times the track
-const CROSSED_SPAN = 0.12 * FULL_SCALE;
+const RAIL_COUNTS = 4; // from the end of the converter's range
+const CROSSED_FROM_COUNTS = 0.88 * FULL_SCALE; // a pull-down of some ten times the track
+const CROSSED_SPAN_COUNTS = 0.12 * FULL_SCALE;
 const DEAD_ZONE_COUNTS = 300; // a jump so far, from near one end to near the other, crosses the gap of the track
 const DEAD_ZONE_ROWS = 8;
 const JUMP_COUNTS = 15;
 const MOST_JUMPS = 2;
 
-/** How a potentiometer's reading goes with its joint: 1 where it grows towards the positive end, and its ends in counts. */
+/** A potentiometer in a sweep: 1 where its reading grows towards the positive end, and its ends in counts. */
 export type Sweep = { readonly direction: number; readonly low: number; readonly high: number };
 type Column = { readonly values: Float64Array; readonly low: number; readonly high: number };
 
-/** What a sweep of `pot` shows, and what is wrong with it: a sentence with its remedy, empty where nothing is. */
+/** The outcome of a sweep of `pot`, and its mistake: a sentence with its remedy, empty where there is none. */
 export function judgeSweep(counts: readonly Float64Array[], pot: number): Sweep & { readonly mistake: string } {
   const columns = counts.map(smoothed);
   const own = columns[pot]!;
@@ -43,7 +43,7 @@ const named = (pot: number): string => upperFirst(potName(pot));
 const whole = (count: number): string => String(Number(fixed(count, 0)));
 const reading = ({ low, high }: Column): string => `${whole(low)} to ${whole(high)} of ${FULL_SCALE}`;
 
-/** Whether this potentiometer moved, and no other; null where it did. */
+/** A sentence for the mistake if another potentiometer moved, or this one did not; null if it moved alone. */
 function wiring(columns: readonly Column[], pot: number): string | null {
   const own = columns[pot]!;
   const others = [...columns.keys()].filter((other) => other !== pot && span(columns[other]!) >= LEAST_COUNTS);
@@ -69,7 +69,7 @@ function wiring(columns: readonly Column[], pot: number): string | null {
     + "loose screw) and that its wiper's wire is connected.";
 }
 
-/** Whether the track is whole where the joint goes, and the contact good. */
+/** A sentence for the mistake if the track ends or breaks where the joint goes, or its contact is bad; else empty. */
 function contact(raw: Float64Array, own: Column, pot: number): string {
   if (isCrossed(own)) return crossed(own, pot);
   if (jumpsAcross(own)) return deadZone(pot);
@@ -92,9 +92,9 @@ function deadZone(pot: number): string {
     + "turn its shaft by half a turn in its coupling and begin anew.";
 }
 
-/** Whether it stays near 5 V but is at no rail: what a pull-down makes of an end of the track on the pin. */
+/** True if it stays near 5 V but is at no rail: a pull-down makes that of an end of the track on the pin. */
 function isCrossed(own: Column): boolean {
-  return own.low > CROSSED_FROM && own.high < FULL_SCALE - RAIL_COUNTS && RAIL_COUNTS < span(own) && span(own) < CROSSED_SPAN;
+  return own.low > CROSSED_FROM_COUNTS && own.high < FULL_SCALE - RAIL_COUNTS && RAIL_COUNTS < span(own) && span(own) < CROSSED_SPAN_COUNTS;
 }
 
 function crossed(own: Column, pot: number): string {

@@ -158,7 +158,7 @@ export class CalibrateView implements View {
     setText(this.said, `${POSES[place]} is taken.${apart ? ` The arms are ${fixed(1000 * Math.max(...apart), 0)} mrad apart in the third pose.` : ""}`);
   }
 
-  /** What sweeps and poses give, as soon as there are enough of them. */
+  /** The result of sweeps and poses, as soon as there are enough of them. */
   private solved(poses: readonly (Pose | null)[], joints: readonly number[]): { found: Calibration; apart: number[] | null } | null {
     const { [FIRST]: first, [SECOND]: second, [THIRD]: third } = poses;
     if (!first || !second || potsOf(joints).some((pot) => !this.sweeps[pot])) return null;

@@ -1,4 +1,4 @@
-// What a person is asked to do: joints by name, and which way of each is positive: greywhale/board/calibrate/words.py.
+// Instructions to a person: joints by name, and which way of each is positive: greywhale/board/calibrate/words.py.
 
 import { potName } from "../../link/refusal";
 import { JOINT_NAMES } from "../../session/samples";

@@ -40,7 +40,7 @@ export function ofRows(rows: readonly (readonly number[])[]): Four {
 
 export type Difference = { readonly name: string; readonly mine: number; readonly other: number };
 
-/** Where two controllers differ, in raw values. */
+/** The places where two controllers differ, in raw values. */
 export function differences(mine: Four, other: Four): Difference[] {
   return mine.flatMap((settings, joint) =>
     SETTING_NAMES.filter((name) => settings[name] !== other[joint]![name]).map((name) =>

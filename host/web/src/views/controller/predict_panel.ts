@@ -1,4 +1,4 @@
-// What the model predicts for a step and a reach with the edited controllers: asked anew while a person drags.
+// Predicts a step and a reach with the edited controllers on the model: anew while a person drags.
 
 import { el, setText } from "../../parts/dom";
 import { motionCanvas, paintMotions } from "../../parts/motions";

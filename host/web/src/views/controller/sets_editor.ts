@@ -96,7 +96,7 @@ export class SetsEditor {
     });
   }
 
-  /** Where the running arm is now, -1..1. */
+  /** The place of the running arm now, -1..1. */
   showPoint(x: number | null): void {
     this.point.style.display = x === null ? "none" : "";
     if (x === null) return;

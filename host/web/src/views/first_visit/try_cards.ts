@@ -16,7 +16,7 @@ type Words = {
   readonly title: string;
   readonly hint: string;
   readonly act: string;
-  /** What takes it back; the act itself where nothing does. */
+  /** The button's words to take it back; those of the act where nothing does. */
   readonly back: string;
   readonly happened: string;
   readonly more: readonly [page: string, title: string];

@@ -36,7 +36,7 @@ export class Charts {
     new ResizeObserver(() => this.resize()).observe(this.element);
   }
 
-  /** Whether the last picture shows each sample. */
+  /** True if the last picture shows each sample. */
   get exact(): boolean {
     return this.pictures.every((picture) => picture.exact);
   }

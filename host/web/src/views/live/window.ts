@@ -3,7 +3,7 @@
 import { Signal } from "../../parts/signal";
 import { TICKS_A_SECOND } from "../../session/samples";
 
-/** What there is to show, in ticks. */
+/** The span that there is to show, in ticks. */
 export type Extent = { readonly firstTime: number; readonly lastTime: number };
 
 const SHORTEST_TICKS = 20;

@@ -38,7 +38,7 @@ export class VerbForm {
     showReason(this.reason, reason);
   }
 
-  /** What a person gave; what was left as it is, is left out. */
+  /** The values that a person gave; what was left as it is, is left out. */
   private given(): Record<string, unknown> {
     const given: Record<string, unknown> = {};
     for (const { argument, input } of this.fields) {

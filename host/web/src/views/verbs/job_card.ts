@@ -5,7 +5,7 @@ import type { Job, Jobs, Json } from "../../session/services";
 import { predictedBeside, trialsIn } from "./predicted";
 import { SearchCurve } from "./search_curve";
 
-/** What a calibration says when it asks for a joint. */
+/** The sentence by which a calibration asks for a joint. */
 const ASKED = /\bjoint ([0-3])\b/;
 
 export class JobCard {
@@ -71,7 +71,7 @@ export class JobCard {
     this.joint.setAttribute("aria-label", `The positive way of joint ${asked}`);
   }
 
-  /** What is done now; a cost is in the curve, any other note stands beside. */
+  /** The step that is done now; a cost is in the curve, any other note stands beside. */
   private step(progress: NonNullable<Job["progress"]>): string {
     return this.curve.hear(progress) || !progress.note ? progress.text : `${progress.text} (${progress.note})`;
   }

@@ -1,9 +1,9 @@
-// What the model predicted of each trial of a commissioning, beside what was measured on the arm.
+// The model's prediction of each trial of a commissioning, beside what was measured on the arm.
 
 import { el, select, tableHead } from "../../parts/dom";
 import type { Json } from "../../session/services";
 
-/** How each measure of a part of the check is shown. */
+/** The way to show each measure of a part of the check. */
 const MEASURES = {
   error: { unit: "mrad rms", size: (squared: number) => 1000 * Math.sqrt(squared), digits: 1 },
   unrest: { unit: "mrad rms", size: (rad: number) => 1000 * rad, digits: 2 },

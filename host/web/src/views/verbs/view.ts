@@ -53,7 +53,7 @@ export class DoView implements View {
     this.showReason();
   }
 
-  /** Why a verb cannot be started from this page now, in a sentence; empty where it can. */
+  /** The reason why a verb cannot be started from this page now, in a sentence; empty where it can. */
   private whyNot({ board, takes_port }: Verb): string {
     const { link, whyNotChange } = this.session;
     if (!board) return "";

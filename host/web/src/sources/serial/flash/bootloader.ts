@@ -68,7 +68,7 @@ const TOKEN = 0x0e;
 const COMMAND = { sign_on: 0x01, load_address: 0x06, leave: 0x11, program_flash: 0x13, read_flash: 0x14, spi: 0x1d };
 const DONE = 0;
 const BEYOND_64_KB = 0x80; // the top bit of an address
-// How to write a page and to wait, for a programmer; a bootloader knows that by itself.
+// The command that writes a page, and the way to wait, for a programmer; a bootloader knows that by itself.
 const HOW_TO_WRITE = [0xc1, 10, 0x40, 0x4c, 0x20, 0, 0];
 
 /** The Mega's: messages with start, sequence number, length, token, body and checksum. */

@@ -67,7 +67,7 @@ async function writeFirst(port: SerialPort, dialect: Dialect, wanted: Uint8Array
   throw new LinkError(stopped("writing", 0));
 }
 
-/** What each board would get, read before a port is opened: a bootloader waits for a second, and a network may be slower. */
+/** Images for each board, read before a port is opened: a bootloader waits for a second, and a network may be slower. */
 async function readImages(
   file: NamedText | null, firmware: (board: string) => Promise<NamedText>,
 ): Promise<ReadonlyMap<Target, Image>> {
