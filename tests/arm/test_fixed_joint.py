@@ -56,7 +56,7 @@ def test_the_rest_moves_as_the_arm_with_its_row_and_column_removed(used: tuple[i
         return np.concatenate([v[kept], a])
 
     exact = solve_ivp(motion, (0, 0.5), np.zeros(2 * len(kept)), rtol=1e-10, atol=1e-12).y[: len(kept), -1]
-    arm = Arm(with_joints(used, "white_box"), longest_step=2e-6)
+    arm = Arm(with_joints(used, "white_box"), longest_step_s=2e-6)
     found = arm.step(volts, 0.5)
     assert np.abs(exact).min() > 0.02
     np.testing.assert_allclose(found[kept], exact, rtol=0, atol=2e-5)

@@ -29,8 +29,8 @@ def drive(arm: Arm, seconds: float = 2.0, slice_s: float = 5e-3) -> Vector:
 
 @pytest.mark.parametrize(("name", "bound"), [("white_box", 7e-4), ("grey_box", 1e-4)])
 def test_step_converges_in_first_order(name: str, bound: float) -> None:
-    exact = drive(Arm(load_arm(name), longest_step=5e-6))
-    errors = [np.abs(drive(Arm(load_arm(name), longest_step=h)) - exact).max() for h in (0.5e-3, 0.25e-3, 0.125e-3)]
+    exact = drive(Arm(load_arm(name), longest_step_s=5e-6))
+    errors = [np.abs(drive(Arm(load_arm(name), longest_step_s=h)) - exact).max() for h in (0.5e-3, 0.25e-3, 0.125e-3)]
     assert errors[1] < bound
     assert errors[0] / errors[1] == pytest.approx(2.0, abs=0.15)
     assert errors[1] / errors[2] == pytest.approx(2.0, abs=0.15)
@@ -38,7 +38,7 @@ def test_step_converges_in_first_order(name: str, bound: float) -> None:
 
 def test_default_arm_is_close_to_the_limit_of_small_steps() -> None:
     """With friction and backlash; the light roll link rattles in its gap, so its bound is a part of that gap."""
-    exact = drive(Arm(default_arm(), longest_step=5e-6))
+    exact = drive(Arm(default_arm(), longest_step_s=5e-6))
     error = np.abs(drive(Arm(default_arm())) - exact).max(axis=0)
     assert (error[:3] < 1e-3).all()
     assert error[3] < default_arm().joint[3].gear.half_gap

@@ -45,7 +45,7 @@ def test_load_friction_moves_as_an_independent_integration_says(make_arm: Any) -
         torque = actuator.torque_per_volt * volts(t) - actuator.damping * motor_v - passed - dry
         return [motor_v, torque / actuator.inertia, v, (passed + load) / link]
 
-    arm = Arm(parameters, longest_step=1e-5)
+    arm = Arm(parameters, longest_step_s=1e-5)
     arm.set_load([0.0, 0.0, 0.0, load])
     ours, theirs, state = [], [], np.zeros(4)
     for step in range(100):
@@ -101,7 +101,7 @@ def test_supply_sags_as_its_circuit_says(make_arm: Any, rigid: Any) -> None:
             current = (duty * left - constant * state[1]) / total
             return [state[1], (constant * current - MOTOR["viscous"] * state[1]) / inertia]
 
-        arm = Arm(parameters, longest_step=2e-5)
+        arm = Arm(parameters, longest_step_s=2e-5)
         arm.step([0.0, 0.0, 0.0, duty * supply], 0.1)
         found = solve_ivp(rate, (0.0, 0.1), [0.0, 0.0], rtol=1e-9, atol=1e-12)
         assert arm.angles[ROLL] == pytest.approx(found.y[0, -1], rel=1e-3)

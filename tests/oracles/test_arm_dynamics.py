@@ -84,7 +84,7 @@ def apart(parameters: ArmParameters, longest_step: float, used: tuple[int, ...] 
     """The greatest distance of the two (rad) in 1 s of changing voltages; the file has the joints in use."""
     model, data = loaded(parameters)
     joints = list(used)
-    arm = Arm(parameters, longest_step=longest_step)
+    arm = Arm(parameters, longest_step_s=longest_step)
     worst = travel = 0.0
     for block in range(20):
         volts = 4.0 * np.sin(np.array([0.2, 0.25, 0.3, 0.35]) * (block + 1))

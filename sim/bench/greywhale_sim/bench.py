@@ -170,9 +170,9 @@ class Bench:
         self.supply_v = volts
         self._last_outputs = b""
 
-    def load_tip(self, mass: float) -> None:
+    def load_tip(self, mass_kg: float) -> None:
         """Let the arm carry so many kg."""
-        self._build_anew(self._own_arm().parameters.model_copy(update={"tip": Tip(mass=mass)}))
+        self._build_anew(self._own_arm().parameters.model_copy(update={"tip": Tip(mass=mass_kg)}))
 
     def obstruct(self, joint: int, angle: float | None) -> None:
         """Put something hard in a joint's way, at an angle (rad) on either side of it; None takes it away."""
@@ -184,9 +184,9 @@ class Bench:
         joints[joint] = joints[joint].model_copy(update={"stops": Stops(min=low, max=high)})
         self._build_anew(parameters.model_copy(update={"joint": tuple(joints)}))
 
-    def push(self, joint: int, torque: float) -> None:
-        """Let a hand push on a joint of the follower (N m), until it is told otherwise."""
-        self._pushes[joint] = torque
+    def push(self, joint: int, torque_nm: float) -> None:
+        """Let a hand push on a joint of the follower, until the next call."""
+        self._pushes[joint] = torque_nm
         self._own_arm().set_load(self._pushes)
 
     def _own_arm(self) -> arm.Arm:

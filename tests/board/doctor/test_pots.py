@@ -46,7 +46,7 @@ def test_a_loose_contact_is_told_by_its_jumps_and_nothing_else_is() -> None:
 def test_hum_is_told_with_its_frequency(hertz: float) -> None:
     counts = resting()
     counts[:, 2] += 3.0 * np.sin(2 * np.pi * hertz * TIME_S)
-    assert look(counts[:, 2]).hum == pytest.approx(3.0, rel=0.05)
+    assert look(counts[:, 2]).hum_counts == pytest.approx(3.0, rel=0.05)
     found = verdicts(counts)
     assert "hum" in bad(found)
     assert f"at {hertz:g} Hz" in found["hum"].says
@@ -98,5 +98,5 @@ def test_rails_are_passed_on() -> None:
 def test_jumps_do_not_count_as_noise() -> None:
     counts = resting()[:, 0]
     counts[500] += 300.0
-    assert look(counts).noise < 0.6
+    assert look(counts).noise_counts < 0.6
     assert look(counts).jumps == 1

@@ -15,8 +15,8 @@ class Arm(_native.Arm):
     after a reset.
     """
 
-    def __init__(self, parameters: ArmParameters, seed: int = 0, longest_step: float = LONGEST_STEP_S) -> None:
-        super().__init__(parameters.native(), seed, longest_step)
+    def __init__(self, parameters: ArmParameters, seed: int = 0, longest_step_s: float = LONGEST_STEP_S) -> None:
+        super().__init__(parameters.native(), seed, longest_step_s)
         self.parameters = parameters
 
 

@@ -48,34 +48,34 @@ def record_through_losses(
         device.close()
         raise
     with LogWriter(path, origin, gaps=True) as log:
-        away: float | None = None  # since when, on this machine's clock
+        away_s: float | None = None  # since when, on this machine's clock
         rows = 0  # when it went away
         while True:
             try:
                 with device:
-                    duration = _write(device, log, away, length, every, report)
+                    duration = _write(device, log, away_s, length, every, report)
                     device.telemetry(0)
                 return Recording(Path(path), log.rows, log.dropped, duration, gaps=tuple(log.gaps))
             except PortLostError as lost:
-                if away is None or log.rows > rows:
-                    away, rows = time.monotonic(), log.rows
-                device = _come_back(name, lost, away + length / 1000 - log.last_s, report, open_device)
+                if away_s is None or log.rows > rows:
+                    away_s, rows = time.monotonic(), log.rows
+                device = _come_back(name, lost, away_s + length / 1000 - log.last_s, report, open_device)
 
 
-def _write(device: Device, log: LogWriter, away: float | None, length: int, every: int, report: Progress) -> float:
-    """Fill the log to its end, after a gap where the port was `away`, and return its duration in s."""
-    if away is not None:
+def _write(device: Device, log: LogWriter, away_s: float | None, length: int, every: int, report: Progress) -> float:
+    """Fill the log to its end, after a gap where the port was away since `away_s`, and return its duration in s."""
+    if away_s is not None:
         _require_same(device, log)
     received = stream(device, every)
     first = next(received)
-    begin = 0 if away is None else _state_gap(log, away)
+    begin = 0 if away_s is None else _state_gap(log, away_s)
     return write_samples(device, log, itertools.chain((first,), received), length, False, report, begin)
 
 
-def _come_back(name: str, lost: PortLostError, until: float, report: Progress, open_device: Open) -> Device:
-    """Wait for the port and open it; past `until` (on the monotonic clock) the loss is told instead."""
+def _come_back(name: str, lost: PortLostError, until_s: float, report: Progress, open_device: Open) -> Device:
+    """Wait for the port and open it; raise the loss after `until_s` on the monotonic clock."""
     last = lost.message
-    while time.monotonic() < until:
+    while time.monotonic() < until_s:
         report("waiting for the port", 0.0)
         try:
             return open_device(name)
@@ -94,8 +94,8 @@ def _require_same(device: Device, log: LogWriter) -> None:
         )
 
 
-def _state_gap(log: LogWriter, away: float) -> int:
-    """Note the gap since `away`, and return the time of the next sample in ms."""
-    gap_s = time.monotonic() - away
+def _state_gap(log: LogWriter, away_s: float) -> int:
+    """Note the gap since `away_s`, and return the time of the next sample in ms."""
+    gap_s = time.monotonic() - away_s
     log.gap(gap_s)
     return round(1000 * (log.last_s + gap_s)) + 1

@@ -21,7 +21,7 @@ from greywhale.protocol import schema
 from greywhale.protocol.firmware import JOINTS
 from greywhale.protocol.joints import ALL, Joints
 
-SHORTEST_TRACK, LONGEST_TRACK = np.radians(180.0), np.radians(450.0)  # the board takes no longer one
+SHORTEST_TRACK_RAD, LONGEST_TRACK_RAD = np.radians(180.0), np.radians(450.0)  # the board takes no longer one
 LEAST_TURN_RAD = 0.3  # rad between two poses: with less, a degree in a hand is much of the scale
 SLIPPED_COUNTS = 8.0  # the same pose twice: 40 mrad of a usual track
 MARGIN_RAD = 0.03  # kept from both ends of what the person showed
@@ -134,7 +134,7 @@ def _between(first: Pose, second: Pose, signs: Floats, pots: Sequence[int]) -> F
     for pot in pots:
         name = pot_name(pot)
         track = abs(turned[pot] / moved[pot]) * FULL_SCALE if moved[pot] else np.inf
-        if not SHORTEST_TRACK <= track <= LONGEST_TRACK:
+        if not SHORTEST_TRACK_RAD <= track <= LONGEST_TRACK_RAD:
             raise UserError(
                 f"{name} read {first.counts[pot]:.0f} and {second.counts[pot]:.0f} in the two poses: as if its track "
                 f"had {np.degrees(track):.0f} degrees; hold the poses again, and check that its shaft does not slip."

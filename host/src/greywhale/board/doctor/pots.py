@@ -29,13 +29,13 @@ HUM_HZ, MUCH_HUM_COUNTS = (50.0, 60.0), 1.5  # amplitude in counts, its first ha
 
 @dataclass(frozen=True)
 class Quiet:
-    """One potentiometer at rest, in counts: `noise` is rms, `hum` an amplitude at `hum_hz`."""
+    """A potentiometer at rest: its noise (rms), hum (amplitude at `hum_hz`), jumps, and its mean's range."""
 
-    noise: float
-    hum: float
+    noise_counts: float
+    hum_counts: float
     hum_hz: float
     jumps: int
-    wandered: float
+    wandered_counts: float
 
 
 def look(counts: Floats) -> Quiet:
@@ -50,11 +50,11 @@ def look(counts: Floats) -> Quiet:
     humming = [_hum(rest, hertz) for hertz in HUM_HZ]
     loudest = int(np.argmax(humming))
     return Quiet(
-        noise=float(np.sqrt(np.mean(rest**2))),
-        hum=humming[loudest],
+        noise_counts=float(np.sqrt(np.mean(rest**2))),
+        hum_counts=humming[loudest],
         hum_hz=HUM_HZ[loudest],
         jumps=int(np.count_nonzero(np.diff(jumped.astype(np.int8)) == 1)),
-        wandered=float(np.ptp(mean)),
+        wandered_counts=float(np.ptp(mean)),
     )
 
 
@@ -64,13 +64,14 @@ def examine_pots(counts: Floats, rails: list[str]) -> list[Finding]:
     if not rails:
         findings.append(Finding("rails", Verdict.GOOD, "No potentiometer reads at a rail."))
     quiet = [look(counts[:, pot]) for pot in range(len(POTS))]
-    moved = [pot for pot, one in enumerate(quiet) if one.wandered > MOVED_COUNTS and not one.jumps]
+    moved = [pot for pot, one in enumerate(quiet) if one.wandered_counts > MOVED_COUNTS and not one.jumps]
     if moved:
         findings.append(
             Finding(
                 "at rest",
                 Verdict.NOTE,
-                f"{_names(moved)} moved by up to {max(quiet[pot].wandered for pot in moved):.0f} counts meanwhile.",
+                f"{_names(moved)} moved by up to {max(quiet[pot].wandered_counts for pot in moved):.0f} counts "
+                "meanwhile.",
                 "Keep both arms still and look again; if nobody touched them, look for a slipping or loose one.",
             )
         )
@@ -114,7 +115,7 @@ def _jumps(quiet: list[Quiet]) -> Finding:
 
 
 def _noise(quiet: list[Quiet]) -> Finding:
-    noise = np.array([one.noise for one in quiet])
+    noise = np.array([one.noise_counts for one in quiet])
     loud = [pot for pot in range(len(POTS)) if noise[pot] > MUCH_NOISE_COUNTS]
     if not loud:
         return Finding("noise", Verdict.GOOD, f"At most {noise.max():.1f} counts rms.")
@@ -128,10 +129,12 @@ def _noise(quiet: list[Quiet]) -> Finding:
 
 
 def _hums(quiet: list[Quiet]) -> Finding:
-    humming = [pot for pot, one in enumerate(quiet) if one.hum > MUCH_HUM_COUNTS]
+    humming = [pot for pot, one in enumerate(quiet) if one.hum_counts > MUCH_HUM_COUNTS]
     if not humming:
-        return Finding("hum", Verdict.GOOD, f"At most {max(one.hum for one in quiet):.1f} counts of mains hum.")
-    listed = ", ".join(f"{pot_name(pot)} {quiet[pot].hum:.1f} counts at {quiet[pot].hum_hz:g} Hz" for pot in humming)
+        return Finding("hum", Verdict.GOOD, f"At most {max(one.hum_counts for one in quiet):.1f} counts of mains hum.")
+    listed = ", ".join(
+        f"{pot_name(pot)} {quiet[pot].hum_counts:.1f} counts at {quiet[pot].hum_hz:g} Hz" for pot in humming
+    )
     return Finding(
         "hum",
         Verdict.NOTE,

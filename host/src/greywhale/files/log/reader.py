@@ -138,10 +138,10 @@ class _Columns:
 
     def take(self, file: csv_file.CsvFile, block: csv_file.Block) -> None:
         """Add the rows of a block; what is wrong in them is a UserError that names the cell."""
-        before = float(self.time[self.rows - 1]) if self.rows else -np.inf
+        before_s = float(self.time[self.rows - 1]) if self.rows else -np.inf
         parsed = parse_rows(block.data)
-        if parsed is None or not _is_good(parsed[0], before):
-            parsed = _cell_by_cell(file.table(block), before)
+        if parsed is None or not _is_good(parsed[0], before_s):
+            parsed = _cell_by_cell(file.table(block), before_s)
         numbers, states = parsed
         here = slice(self.rows, self.rows + len(numbers))
         self.time[here] = numbers[:, 0]
@@ -186,16 +186,16 @@ def _refuse_other_period(name: str, origin: Origin, columns: _Columns) -> None:
         )
 
 
-def _is_good(numbers: NDArray[np.float64], before: float) -> bool:
+def _is_good(numbers: NDArray[np.float64], before_s: float) -> bool:
     """True if time goes on, and all is within what a board can say."""
-    return csv_file.is_time_axis(numbers[:, 0], before) and all(
+    return csv_file.is_time_axis(numbers[:, 0], before_s) and all(
         bool((np.abs(numbers[:, _PLACES[quantity]]) <= most).all()) for quantity, (most, _) in _MOST.items()
     )
 
 
-def _cell_by_cell(table: csv_file.CsvTable, before: float) -> tuple[NDArray[np.float64], NDArray[np.int8]]:
+def _cell_by_cell(table: csv_file.CsvTable, before_s: float) -> tuple[NDArray[np.float64], NDArray[np.int8]]:
     """Parse rows in any form of CSV like `parse_rows`, each cell checked."""
-    time = table.increasing("time_s", before)
+    time = table.increasing("time_s", before_s)
     for row, cell in enumerate(table.columns["state"]):
         if cell not in STATES:
             raise table.error(row, "state", f"{cut(repr(cell))} is not one of {', '.join(STATES)}")
