@@ -89,7 +89,7 @@ void bind_stats(nb::module_& m) {
       .def_ro("mean", &InterruptTimes::mean)
       .def_ro("max", &InterruptTimes::longest);
 
-  nb::class_<Stats>(m, "Stats", "What happened since the board was made.")
+  nb::class_<Stats>(m, "Stats", "Counts of what happened since the board was made.")
       .def_prop_ro("sleep_cycles", [](const Stats& s) { return s.counted.sleep_cycles; })
       .def_prop_ro(
           "resets", [](const Stats& s) { return s.counted.resets; }, "Of every cause, power-on included.")
@@ -181,7 +181,7 @@ void bind_pins(BoardClass& c) {
            "All watched outputs, duties 0..1 and pins 0 or 1. The same array each time: copy what must stay.")
       .def("duty", &PyBoard::duty, "timer"_a, "channel"_a,
            "Mean level of an output-compare pin, 0..1, from the registers.")
-      .def("pin", &PyBoard::pin, "port"_a, "bit"_a, "Whether the pin is driven high.")
+      .def("pin", &PyBoard::pin, "port"_a, "bit"_a, "True if the pin is driven high.")
       .def("hold_pin", &PyBoard::hold_pin, "port"_a, "bit"_a, "high"_a,
            "Hold a pin at a level from outside, as a button does, until let_pin_go(). It matters while the pin is an "
            "input.")

@@ -201,7 +201,7 @@ void bind_motion(nb::module_& m) {
 }
 
 void bind_pots(nb::module_& m) {
-  nb::enum_<arm::Wiring>(m, "Wiring", "Where a potentiometer's wiper leads.")
+  nb::enum_<arm::Wiring>(m, "Wiring", "The place that a potentiometer's wiper leads to.")
       .value("CONNECTED", arm::Wiring::connected)
       .value("OPEN", arm::Wiring::open, "wire off: the pull-down reads 0 V")
       .value("SHORTED", arm::Wiring::shorted, "wiper on the supply");
@@ -235,7 +235,7 @@ void bind_pots(nb::module_& m) {
             self.counts(Copy(angles).values, bits, out);
             return array_of(out);
           },
-          "angles"_a, "bits"_a = 10, "The same through a converter whose reference is the supply.")
+          "angles"_a, "bits"_a = 10, "Counts of a converter whose reference is the supply.")
       .def("set_wiring", &arm::Potentiometers::set_wiring, "joint"_a, "wiring"_a)
       .def("wiring", &arm::Potentiometers::wiring, "joint"_a);
 }

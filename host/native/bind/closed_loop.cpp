@@ -261,13 +261,13 @@ nb::object plant_row(const arm::ArmParameters& parameters) {
 }  // namespace
 
 void bind_closed_loop(nb::module_& m) {
-  nb::class_<loop::Settings>(m, "LoopSettings", "What the closed loop needs of a parameter table, raw values.")
+  nb::class_<loop::Settings>(m, "LoopSettings", "The values of a parameter table that the closed loop needs, raw.")
       .def("__init__", &make_settings, nb::kw_only(), "period_ms"_a, "supply_mv"_a, "soft_start_ms"_a, "filter_shift"_a,
            "limit_min"_a, "limit_max"_a, "motor_sign"_a, "pwm_top"_a, "leader_zero"_a, "leader_scale"_a,
            "follower_zero"_a, "follower_scale"_a);
   nb::class_<loop::Timing>(
       m, "LoopTiming",
-      "When conversions begin (cycles) and voltages act (slices) within a tick, and by how many ticks duties are late.")
+      "Within a tick: the start of conversions (cycles), of voltages (slices); and the lateness of duties (ticks).")
       .def(
           "__init__",
           [](loop::Timing* self, int start, const Each<int>& acts, int on, int late) {
@@ -290,13 +290,13 @@ void bind_closed_loop(nb::module_& m) {
         "leader"_a.noconvert(), "follower"_a.noconvert(), "limit_mv"_a.noconvert(), "instructions"_a,
         "The batch kernel's form of the law, in mV; for tests.");
   m.def("swings", &swings<float>, "traces"_a.noconvert(), "first"_a, "last"_a, "band"_a,
-        "How often (int32) and how far (float64) traces, n x rows x 4, swing to and fro by more than the band: both n "
+        "Number (int32) and travel (float64) of the swings of traces, n x rows x 4, by more than the band: both n "
         "x 4.");
   m.def("swings", &swings<std::int16_t>, "traces"_a.noconvert(), "first"_a, "last"_a, "band"_a);
   m.def("ripple", &ripple, "traces"_a.noconvert(), "first"_a, "last"_a, "window"_a,
         "Mean square (n x 4) of traces, n x rows x 4, less their own mean over `window` rows.");
   m.def("shown_angles", &shown_angles, nb::kw_only(), "angles"_a.noconvert(), "plants"_a.noconvert(), "row_s"_a,
-        "What the plants' potentiometers show (float64) of their joints' angles, n x rows x 4, a row every row_s.");
+        "Readings (float64) of the plants' potentiometers for joint angles, n x rows x 4, a row every row_s.");
   m.def("plant_row", &plant_row, "parameters"_a, "An arm as one row of numbers.");
   m.def("instruction_sets", &loop::instruction_sets,
         "Those of the batch kernel that this processor runs, the best first.");

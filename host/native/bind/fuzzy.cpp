@@ -211,7 +211,7 @@ void bind_fuzzy(nb::module_& m) {
         law::Coefficients unused;
         return static_cast<int>(law::compile(settings, period_ms, unused));
       },
-      "settings"_a, "period_ms"_a, "Why compile() refuses these settings; 0 when it takes them.");
+      "settings"_a, "period_ms"_a, "The reason why compile() refuses these settings; 0 when it takes them.");
 
   m.def("fuzzy_worst_difference", &worst_difference, "settings"_a, "period_ms"_a, "e"_a, "ce"_a,
         nb::call_guard<nb::gil_scoped_release>(),
