@@ -62,14 +62,14 @@ def is_named(seed: int, name: str) -> bool:
         bench.command(f"mistake {name}" + (f":{places[number]}" if places[number] else ""))
         if fault.verb == "calibrate":
             done = run_calibrate(CalibratingPerson(bench), Path(folder), *SECOND)
-            code, told = done.code, done.said + done.printed
+            code, output = done.code, done.said + done.printed
         else:
             bench.command("hand both 0.1 -0.6 0.7 0.4")
             out = io.StringIO()
             with contextlib.redirect_stdout(out):
                 code = verb(["doctor", "--port", bench.port, "--seconds", "0.5", "--json", *fault.options])
-            told = out.getvalue()
-        named = re.search(fault.tells(number), told) is not None
+            output = out.getvalue()
+        named = re.search(fault.tells(number), output) is not None
         within = max(bench.command("pins")["duties"]) <= PULSE_SHARES[-1] + 1 / 400
         stored = bool(bench.command("status")["eeprom_writes"])
         return named and within and code == int(fault.ends == "refused") and (code == 0 or not stored)

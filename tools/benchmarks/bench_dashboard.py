@@ -35,8 +35,8 @@ def run() -> list[Figure]:
         server = start([*command, "--folder", folder], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
         try:
             assert server.stdout is not None
-            told = json.loads(server.stdout.readline())
-            page = _Page(int(re.findall(r":(\d+)/", told["address"])[0]), told["token"])
+            answer = json.loads(server.stdout.readline())
+            page = _Page(int(re.findall(r":(\d+)/", answer["address"])[0]), answer["token"])
             page.samples()
             first_s = time.monotonic() - begun
             return [

@@ -103,10 +103,10 @@ def _noise(seed: int) -> dict[str, Any]:
 def _drills(model: Model) -> list[dict[str, Any]]:
     motions = training.training_motions(model.arm, model.table, model.plants, SEED)
     floors = possible.scale_of(motions, model.plants, model.controllers).floor[0]
-    told = []
+    drills = []
     for number, (drill, floor) in enumerate(zip(motions, floors, strict=True)):
         _, moving = training.moving_ticks(drill.motion, training.WAIT_S)
-        told.append(
+        drills.append(
             {
                 "name": drill.name,
                 "steps": steps_of(drill.motion),
@@ -120,7 +120,7 @@ def _drills(model: Model) -> list[dict[str, Any]]:
                 "least_room": np.maximum(possible.LEAST_SHARE * floor, possible.LEAST_RAD).tolist(),
             }
         )
-    return told
+    return drills
 
 
 def _rests(model: Model, rest_s: float, noise: int, beyond: float, cycle: swings.Hunting) -> dict[str, Any]:

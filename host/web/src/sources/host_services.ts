@@ -57,8 +57,8 @@ export class HostServices implements Services {
   }
 
   private async ask<Answer>(method: Method, path: string, body?: object): Promise<Answer> {
-    const told = await (await this.request(method, path, body)).text();
-    return (told ? JSON.parse(told) : {}) as Answer;
+    const text = await (await this.request(method, path, body)).text();
+    return (text ? JSON.parse(text) : {}) as Answer;
   }
 
   /** The server's answer; one that refuses is an error with its sentence. */
@@ -73,11 +73,11 @@ export class HostServices implements Services {
   }
 }
 
-function sentenceIn(told: string): string | null {
+function sentenceIn(text: string): string | null {
   try {
-    const { error } = JSON.parse(told) as { error?: string };
+    const { error } = JSON.parse(text) as { error?: string };
     return error ?? null;
   } catch {
-    return told.length < 300 && told ? told : null;
+    return text.length < 300 && text ? text : null;
   }
 }

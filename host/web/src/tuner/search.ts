@@ -77,13 +77,13 @@ export class Search implements Found {
     const costs = this.costs(rows, this.refines);
     this.evaluations += rows.length;
     for (const joint of ALL) {
-      const told = costs.slice(0, counts[joint]).map((row) => row[joint]!);
-      told.forEach((cost, n) => {
+      const own = costs.slice(0, counts[joint]).map((row) => row[joint]!);
+      own.forEach((cost, n) => {
         if (!(cost < this.cost[joint]!)) return;
         this.cost[joint] = cost;
         this.best[joint] = rows[n]![joint]!;
       });
-      if (told.length) packs[joint]?.tell(told);
+      if (own.length) packs[joint]?.tell(own);
     }
     this.curve.push([this.evaluations, [...this.cost]]);
     return this;

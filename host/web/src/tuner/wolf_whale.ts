@@ -49,14 +49,14 @@ export class WolfWhale {
   tell(costs: readonly number[]): void {
     this.left -= costs.length;
     if (!this.whole) return;
-    const told = costs.map((cost) => (Number.isFinite(cost) ? cost : Infinity));
+    const values = costs.map((cost) => (Number.isFinite(cost) ? cost : Infinity));
     if (!this.pack.length) {
-      [this.pack, this.costs] = [this.tried, told];
+      [this.pack, this.costs] = [this.tried, values];
       return;
     }
-    const better = told.map((cost, wolf) => cost < this.costs[wolf]!);
+    const better = values.map((cost, wolf) => cost < this.costs[wolf]!);
     this.pack = this.pack.map((place, wolf) => (better[wolf] ? this.tried[wolf]! : place));
-    this.costs = this.costs.map((cost, wolf) => (better[wolf] ? told[wolf]! : cost));
+    this.costs = this.costs.map((cost, wolf) => (better[wolf] ? values[wolf]! : cost));
   }
 
   private first(): Rows {

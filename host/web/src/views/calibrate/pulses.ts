@@ -88,12 +88,12 @@ export class Trial {
       + "its supply sinks when a motor draws. Give the motors a supply of their own, with a common ground, and 1000 uF or more at the drivers, and begin anew.");
   }
 
-  private async until(reached: () => boolean, told: string): Promise<void> {
+  private async until(reached: () => boolean, sentence: string): Promise<void> {
     for (let waited = 0; !reached(); waited += LOOK_MS) {
       if (this.session.stopsAsked !== this.stopsAsked || document.visibilityState === "hidden") {
         throw new LinkError(`The motor of joint ${this.joint} was not tried to the end: Stop was pressed, or the page was hidden.`);
       }
-      if (waited > PATIENCE_MS) throw new LinkError(told);
+      if (waited > PATIENCE_MS) throw new LinkError(sentence);
       await new Promise((settle) => setTimeout(settle, LOOK_MS));
     }
   }

@@ -88,11 +88,11 @@ function limitsOf({ zero, scale }: Calibration, sweeps: readonly (Sweep | null)[
 
 /** Fails where a potentiometer reads otherwise in the same pose. */
 export function requireNoSlip(before: Pose, after: Pose): void {
-  const told = before.counts.flatMap((count, pot) => {
+  const sentences = before.counts.flatMap((count, pot) => {
     const apart = Math.abs(after.counts[pot]! - count);
     return apart > SLIPPED_COUNTS ? `${upperFirst(potName(pot))} reads ${fixed(apart, 0)} counts elsewhere in the same pose: it slips on its shaft; tighten it, and begin anew.` : [];
   });
-  if (told.length) throw new LinkError(told.join(" "));
+  if (sentences.length) throw new LinkError(sentences.join(" "));
 }
 
 /** The distance of the arms at each joint in use, in rad, in a pose from which nothing was worked out; fails where that is too far. */

@@ -186,9 +186,9 @@ export class CalibrateView implements View {
       this.motors.set(joint, await new Trial(this.session, before, after, joint).run());
     } finally {
       for (const one of buttons) one.disabled = false;
-      const told = [...this.motors.values()].map(({ joint: one, volts, sign }) =>
+      const sentences = [...this.motors.values()].map(({ joint: one, volts, sign }) =>
         `Motor ${one}: ${fixed(volts, 1)} V moved it${sign < 0 ? ", the other way round; Store puts that right" : ""}.`);
-      setText(this.turned, [...told, ...remarks([...this.motors.values()], before[TABLE.named("supply_mv").index]! / 1000)].join(" "));
+      setText(this.turned, [...sentences, ...remarks([...this.motors.values()], before[TABLE.named("supply_mv").index]! / 1000)].join(" "));
     }
   }
 

@@ -21,7 +21,7 @@ export class TriggerPanel {
   private readonly level = el("input", {
     type: "number", value: "0.1", attrs: { step: "any", "aria-label": "Level in rad or V" },
   });
-  private readonly told = el("p", { class: "quiet", attrs: { "aria-live": "polite" } });
+  private readonly state = el("p", { class: "quiet", attrs: { "aria-live": "polite" } });
   private readonly arm = button("Wait for it", () => this.toggle());
 
   constructor(private readonly session: Session, private readonly window: TimeWindow) {
@@ -34,7 +34,7 @@ export class TriggerPanel {
       for (const other of [what, joint, this.level]) other.disabled = name === "fault";
     });
     this.element = el("section", { class: "card" }, el("h2", {}, "Capture"),
-      el("div", { class: "row" }, joint, what, kind, this.level), el("div", { class: "row" }, this.arm), this.told);
+      el("div", { class: "row" }, joint, what, kind, this.level), el("div", { class: "row" }, this.arm), this.state);
   }
 
   private toggle(): void {
@@ -44,21 +44,21 @@ export class TriggerPanel {
     }
     const at = Number(this.level.value);
     if (this.kind !== "fault" && (this.level.value === "" || !Number.isFinite(at))) {
-      setText(this.told, "The level is not a number; give one in rad or V.");
+      setText(this.state, "The level is not a number; give one in rad or V.");
       return;
     }
     const { kind, quantity, joint } = this;
     this.trigger = new Trigger(this.session.samples, kind === "fault" ? { kind } : { kind, quantity, joint, at });
     this.window.follow();
     setText(this.arm, "Wait no longer");
-    setText(this.told, "Waiting.");
+    setText(this.state, "Waiting.");
   }
 
   private end(text: string): void {
     this.trigger = null;
     this.until = null;
     setText(this.arm, "Wait for it");
-    setText(this.told, text);
+    setText(this.state, text);
   }
 
   /** Looks at the newest samples. */
@@ -70,11 +70,11 @@ export class TriggerPanel {
       if (number === null) return;
       const time = samples.timeOf(number);
       this.until = time + (1 - BEFORE_SHARE) * this.window.spanTicks;
-      setText(this.told, `It happened at ${(time / TICKS_A_SECOND).toFixed(3)} s.`);
+      setText(this.state, `It happened at ${(time / TICKS_A_SECOND).toFixed(3)} s.`);
     }
     if (samples.lastTime >= this.until) {
       this.window.show(this.until - this.window.spanTicks, this.until);
-      this.end(this.told.textContent ?? "");
+      this.end(this.state.textContent ?? "");
     }
   }
 }

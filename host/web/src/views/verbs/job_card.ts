@@ -81,8 +81,8 @@ export class JobCard {
     const { curves = null, ...rest }: Entries = isRecord(result) ? result : { result };
     this.curve.end(curves);
     const trials = trialsIn(rest);
-    const told = trials.length ? { ...rest, trials: trials.map(({ predicted, measured, ...other }) => other) } : rest;
-    const details = describe(told, 0);
+    const shown = trials.length ? { ...rest, trials: trials.map(({ predicted, measured, ...other }) => other) } : rest;
+    const details = describe(shown, 0);
     this.result.replaceChildren(
       ...(summary ? [inWords(summary)] : []),
       ...(trials.length ? [predictedBeside(trials)] : []),

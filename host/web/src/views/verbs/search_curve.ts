@@ -21,16 +21,16 @@ export class SearchCurve {
 
   /** Takes the cost that stands in a note; false where it holds none. */
   hear({ done, total, note }: NonNullable<Job["progress"]>): boolean {
-    const told = COST.exec(note);
-    if (!told) return false;
+    const found = COST.exec(note);
+    if (!found) return false;
     const share = (100 * done) / (total || 1);
     const last = this.share.at(-1) ?? -1;
     if (share < last) this.share.length = this.cost.length = 0; // another search
     const near = this.share.length > 1 && share - last < 100 * LEAST_STEP;
     const place = this.share.length - (near ? 1 : 0);
     this.share[place] = near ? last : share;
-    this.cost[place] = Number(told[2]);
-    setText(this.words, `Best ${told[1]} so far: ${told[2]}`);
+    this.cost[place] = Number(found[2]);
+    setText(this.words, `Best ${found[1]} so far: ${found[2]}`);
     this.draw("% of the search", [{ x: this.share, y: this.cost, shade: "accent" }]);
     return true;
   }

@@ -93,11 +93,11 @@ async function boardOf(bootloader: Bootloader): Promise<Target> {
   let signature: Uint8Array | null = null;
   // Half a question that was asked twice may be waiting for its other half: the first answer is lost then.
   for (let left = ATTEMPTS; left && !signature; left--) signature = await bootloader.signature();
-  const told = signature && hex(signature);
-  const board = TARGETS.find((one) => one.signature === told);
+  const hexSignature = signature && hex(signature);
+  const board = TARGETS.find((one) => one.signature === hexSignature);
   if (board) return board;
   const known = TARGETS.map((one) => `${titleOf(one)} (${one.signature})`).join(" and ");
-  throw new LinkError(`The chip has ${told ? `signature ${told}` : "no readable signature"}; greywhale runs on ${known} only.`);
+  throw new LinkError(`The chip has ${hexSignature ? `signature ${hexSignature}` : "no readable signature"}; greywhale runs on ${known} only.`);
 }
 
 async function writeImage(bootloader: Bootloader, { memory }: Image, { page }: Target, report: Report): Promise<void> {
