@@ -104,7 +104,7 @@ def _no_wait_for_the_disk() -> Iterator[None]:
 # programs, while lint still has a use for the processor.
 LONGEST = (
     *("page", "dashboard", "end_to_end", "docs", "board", "commission", "identify", "attack", "tune"),
-    *("cli", "reproduce", "fuzzy", "base", "oracles/test_wheels.py"),
+    *("cli", "paper", "fuzzy", "base", "oracles/test_wheels.py"),
 )
 
 

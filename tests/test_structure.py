@@ -13,11 +13,16 @@ import pytest
 from tools import ROOT
 
 SOURCE = ROOT / "host" / "src"
+# Beside greywhale: the bench, which comes in the same distribution, and the paper, which has one of its own.
+BENCH = ROOT / "sim" / "bench"
+PAPER = ROOT / "studies" / "paper"
 # The rooms of the package in the order in which they stand on each other: each imports only rooms before it.
 ROOMS = [
     *("base", "protocol", "arm", "files", "fuzzy", "measure", "loop", "board", "pictures"),
-    *("optimise", "identify", "tune", "commission", "adapt", "reproduce", "dashboard", "cli"),
+    *("optimise", "identify", "tune", "commission", "adapt", "dashboard", "cli"),
 ]
+# Of these the paper needs no more.
+UNKNOWN_TO_THE_PAPER = {"board", "commission", "adapt", "dashboard"}
 PAGE = ROOT / "host" / "web" / "src"
 # The page's rooms in the same order. Views know the interfaces in session, and no source behind them.
 PAGE_ROOMS = ["link", "parts", "session", "files", "tuner", "sources", "views", "entries"]
@@ -82,21 +87,24 @@ def circle(edges: Mapping[str, set[str]]) -> list[str]:
     return []
 
 
-@pytest.mark.parametrize("source", ["host/src", "sim/bench"])
-def test_no_module_imports_in_a_circle(source: str) -> None:
-    assert circle(graph(ROOT / source)) == []
+SOURCES = pytest.mark.parametrize("source", [SOURCE, BENCH, PAPER], ids=["host", "bench", "paper"])
 
 
-@pytest.mark.parametrize("source", ["host/src", "sim/bench"])
-def test_no_folder_imports_in_a_circle(source: str) -> None:
+@SOURCES
+def test_no_module_imports_in_a_circle(source: Path) -> None:
+    assert circle(graph(source)) == []
+
+
+@SOURCES
+def test_no_folder_imports_in_a_circle(source: Path) -> None:
     """A module at the top of a package counts as a room of its own, as do the modules in each folder together."""
-    top = {"host/src": "greywhale", "sim/bench": "greywhale_sim"}[source]
+    (top,) = (path.parent.name for path in source.glob("*/__init__.py"))
     rooms: dict[str, set[str]] = {}
-    for name, targets in graph(ROOT / source).items():
-        here = folder_of(name, ROOT / source)
+    for name, targets in graph(source).items():
+        here = folder_of(name, source)
         here = name if here == top else here
         for target in targets:
-            there = folder_of(target, ROOT / source)
+            there = folder_of(target, source)
             there = target if there == top else there
             if there != here:
                 rooms.setdefault(here, set()).add(there)
@@ -111,6 +119,22 @@ def test_a_room_imports_only_rooms_below_it() -> None:
             below = {"_native", *ROOMS[: ROOMS.index(room) + 1]}
             beyond = {target for target in targets if target.split(".")[1] not in below}
             assert not beyond, f"{name} imports {', '.join(sorted(beyond))}"
+
+
+@pytest.mark.parametrize("source", [SOURCE, BENCH], ids=["host", "bench"])
+def test_greywhale_finds_the_paper_by_entry_point_and_names_none_of_its_modules(source: Path) -> None:
+    assert [path for path in source.rglob("*.py") if "greywhale_paper" in path.read_text(encoding="utf-8")] == []
+
+
+def test_the_paper_imports_only_public_rooms() -> None:
+    """No room that serves a connected arm alone, no private name, and not the extension."""
+    known, public = modules(SOURCE), set(ROOMS) - UNKNOWN_TO_THE_PAPER
+    for name, path in modules(PAPER).items():
+        beyond = {target for target in imports(name, path, known) if target.split(".")[1] not in public}
+        assert not beyond, f"{name} imports {', '.join(sorted(beyond))}"
+        text = path.read_text(encoding="utf-8")
+        assert [f"{name}:{line}: {used}" for line, used in private_uses(ast.parse(text))] == []
+        assert "_native" not in text, name
 
 
 def page_graph() -> dict[str, set[str]]:
@@ -168,12 +192,18 @@ def test_what_is_not_installed_points_one_way(folder: str, forbidden: str) -> No
         ("serial.Serial(", "greywhale/protocol/transport.py"),
         ("subprocess.Popen(", "greywhale/base/processes.py"),
         ("get_context(", "greywhale/base/study/workers.py"),
-        ("matplotlib.", "greywhale/pictures/plotting.py greywhale/pictures/page.py greywhale/reproduce/render/pdf.py"),
+        ("matplotlib.", "greywhale/pictures/plotting.py greywhale/pictures/page.py greywhale_paper/render/pdf.py"),
+        ("reportlab", "greywhale_paper/render/pdf.py"),
     ],
 )
 def test_each_thing_has_its_owner(word: str, owner: str) -> None:
     """The native code, the table by index, the port and the disk are touched where they belong and nowhere else."""
-    users = {str(path.relative_to(SOURCE)) for path in SOURCE.rglob("*.py") if word in path.read_text("utf-8")}
+    users = {
+        str(path.relative_to(source))
+        for source in (SOURCE, PAPER)
+        for path in source.rglob("*.py")
+        if word in path.read_text("utf-8")
+    }
     assert users == set(owner.split())
 
 

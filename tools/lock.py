@@ -1,7 +1,7 @@
-"""Pins every Python package that pyproject.toml leads to: `make lock` writes requirements.txt with what
-it takes to build and run, tools/setup/page.txt with what builds the page, tools/setup/compiler.txt with a compiler for
-the firmware, tools/requirements.txt with what checks and tests need beside them, and tools/oracles/requirements.txt
-with what the outside references need beside all of them.
+"""Pins every Python package that the pyproject.toml of greywhale and greywhale-paper ask for: `make lock` writes
+requirements.txt with what it takes to build and run, tools/setup/page.txt with what builds the page,
+tools/setup/compiler.txt with a compiler for the firmware, tools/requirements.txt with what checks and tests need beside
+them, and tools/oracles/requirements.txt with what the outside references need beside all of them.
 
 Every version comes with the digests of its files, for all platforms, so that the set-up installs these files or none.
 """
@@ -55,13 +55,19 @@ def runtime() -> list[str]:
     return _names_of("project", "dependencies")
 
 
+def paper() -> list[str]:
+    """The packages that an installed greywhale-paper asks for, beside greywhale."""
+    asked = _names_of("project", "dependencies", file=ROOT / "studies" / "paper" / "pyproject.toml")
+    return [name for name in asked if name_of(name) != "greywhale"]
+
+
 def build() -> list[str]:
     """The packages that a checkout asks for to be built and run, its firmware included."""
-    return [*runtime(), *_names_of("project", "optional-dependencies", "build"), *group("build")]
+    return [*runtime(), *paper(), *_names_of("project", "optional-dependencies", "build"), *group("build")]
 
 
 def wanted() -> list[str]:
-    """The packages that greywhale asks for to be built, run, checked and tested."""
+    """The packages that a checkout asks for to be built, run, checked and tested."""
     return [*build(), *group("dev")]
 
 
@@ -76,9 +82,9 @@ def versions() -> list[str]:
     return _versions([line for line in lines if re.match(r"[\w.-]+==", line)])
 
 
-def _names_of(*keys: str) -> list[str]:
-    """The packages that pyproject.toml lists under these keys."""
-    table: Any = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+def _names_of(*keys: str, file: Path = ROOT / "pyproject.toml") -> list[str]:
+    """The packages that a pyproject.toml lists under these keys."""
+    table: Any = tomllib.loads(file.read_text(encoding="utf-8"))
     for key in keys:
         table = table[key]
     return list(table)

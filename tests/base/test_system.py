@@ -19,7 +19,7 @@ from greywhale.base.errors import FAILED
 # Where greywhale has what it has on Windows, and other packages what they have here. Locks on a file are this system's,
 # under their name on Windows. Every port that pyserial opens is another program's.
 LIKE_WINDOWS = """
-import asyncio, importlib, os, select, signal, socket, subprocess, sys, types
+import asyncio, os, pkgutil, select, signal, socket, subprocess, sys, types
 import serial, serial.tools.list_ports
 import greywhale
 
@@ -55,8 +55,8 @@ def test_all_verbs_run_with_what_windows_has_or_say_what_they_need(tmp_path: Pat
     program = """
 from greywhale.cli import verbs
 from greywhale.cli.entry import run
-for module in verbs.VERBS:
-    importlib.import_module(f"greywhale.cli.{module}")
+for verb in verbs.all_verbs():
+    pkgutil.resolve_name(verbs.place_of(verb))
 print([run(words.split()) for words in sys.argv[1:]])
 """
     done = on_windows(

@@ -32,12 +32,12 @@ from greywhale.identify import identify
 from greywhale.loop import human_reaches
 from greywhale.protocol.schema import HelloReply
 from greywhale.protocol.table import ParameterTable
-from greywhale.reproduce import run as reproduce_run
-from greywhale.reproduce.pages import report as reproduce_report
-from greywhale.reproduce.pages.document import Document
-from greywhale.reproduce.request import Request
 from greywhale.tune import tune
 from greywhale.tune.model import load_model
+from greywhale_paper import run as reproduce_run
+from greywhale_paper.pages import report as reproduce_report
+from greywhale_paper.pages.document import Document
+from greywhale_paper.request import Request
 from greywhale_sim import serve as bench_serve
 from greywhale_sim.lockstep import LockStepBench
 from greywhale_sim.words import lock_step

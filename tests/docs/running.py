@@ -25,7 +25,7 @@ from typing import Any
 import click
 
 from greywhale.cli import entry
-from greywhale.cli.verbs import VERBS, greywhale
+from greywhale.cli.verbs import all_verbs, greywhale
 from tools import ROOT
 from tools.docs.examples import Block, Command, split
 
@@ -136,7 +136,7 @@ def writes_over(arguments: list[str]) -> list[str]:
 
 
 def _shorter(arguments: list[str]) -> list[str]:
-    verb = next((word for word in arguments if word in VERBS), "")
+    verb = next((word for word in arguments if word in all_verbs()), "")
     longer = {"record": "--excite", "info": "--watch"}.get(verb)
     key = f"{verb} {longer}" if longer in arguments else verb
     return [] if "--hex" in arguments else SHORTER.get(key, "").split()

@@ -11,7 +11,8 @@ from hypothesis import strategies as st
 
 from greywhale.base.types import Floats
 from greywhale.optimise import METHODS, Step, create, mapped, minimise
-from greywhale.optimise.functions import FUNCTIONS
+from greywhale.optimise.swarm import Swarm
+from greywhale_paper.optimisers.functions import FUNCTIONS
 
 EVERY = pytest.mark.parametrize("method", list(METHODS))
 LOWER, UPPER = np.array([-3.0, 0.5, -100.0]), np.array([2.0, 0.75, 40.0])
@@ -179,6 +180,16 @@ def test_spent_budget_gives_no_more_candidates() -> None:
 @pytest.mark.parametrize("method", [method for method in METHODS if method != "cma-es"])
 def test_one_coordinate_is_enough(method: str) -> None:
     assert minimise(lambda x: (x[:, 0] - 0.3) ** 2, [0], [1], method=method, budget=400).cost < 1e-3
+
+
+def test_a_class_of_ones_own_is_taken_where_a_name_is() -> None:
+    class Mine(Swarm):
+        name = "mine"
+
+    named, mine = (minimise(bowl, LOWER, UPPER, method=method, budget=60, seed=3) for method in ("pso", Mine))
+    assert (named.method, mine.method) == ("pso", "mine")
+    assert (named.x == mine.x).all()
+    assert "mine" not in METHODS
 
 
 @pytest.mark.parametrize(

@@ -11,7 +11,8 @@ import pytest
 from greywhale.base.errors import UserError
 from greywhale.base.types import Floats
 from greywhale.optimise import create, minimise
-from greywhale.optimise.comparison import Plan
+from greywhale_paper.optimisers.comparison import Plan
+from greywhale_paper.optimisers.nevergrad_choice import NevergradChoice
 
 LOWER, UPPER = np.array([-2.0, -1.0, 0.0, 3.0]), np.array([2.0, 4.0, 1.0, 9.0])
 
@@ -28,7 +29,7 @@ def test_it_is_nevergrads_and_the_seed_decides() -> None:
         asked.append(points.copy())
         return valley(points)
 
-    minimise(record, LOWER, UPPER, method="ngopt", budget=120, seed=8)
+    minimise(record, LOWER, UPPER, method=NevergradChoice, budget=120, seed=8)
 
     np.random.seed(123)  # nevergrad draws from numpy's global generator; nothing may depend on that
     source = np.random.default_rng(8)
@@ -44,7 +45,7 @@ def test_it_is_nevergrads_and_the_seed_decides() -> None:
 
 def test_it_begins_at_the_start_point_and_bears_infinite_costs() -> None:
     start = 0.5 * (LOWER + UPPER)
-    optimiser = create("ngopt", LOWER, UPPER, budget=30, start=[start])
+    optimiser = create(NevergradChoice, LOWER, UPPER, budget=30, start=[start])
     assert np.allclose(optimiser.ask(), start)
     while not optimiser.done:
         optimiser.tell(np.full(len(optimiser.ask()), np.inf))
@@ -52,7 +53,7 @@ def test_it_begins_at_the_start_point_and_bears_infinite_costs() -> None:
 
 def test_its_threads_end_with_it() -> None:
     before = threading.active_count()
-    minimise(valley, LOWER, UPPER, method="ngopt", budget=100, callback=lambda step: step.evaluations == 20)
+    minimise(valley, LOWER, UPPER, method=NevergradChoice, budget=100, callback=lambda step: step.evaluations == 20)
     for thread in threading.enumerate():
         if thread is not threading.current_thread() and threading.active_count() > before:
             thread.join(timeout=60)

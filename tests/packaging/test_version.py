@@ -1,4 +1,4 @@
-"""One version: package, bench, firmware, citation and change log agree."""
+"""One version: both packages, bench, firmware, citation and change log agree."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from greywhale.cli.verbs import greywhale as command_line
 from tools import ROOT
 
 VERSION = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["version"]
+PAPER = tomllib.loads((ROOT / "studies/paper/pyproject.toml").read_text(encoding="utf-8"))["project"]
 
 
 @pytest.mark.parametrize(
@@ -32,8 +33,14 @@ def test_each_place_has_the_version_of_the_package(file: str, pattern: str) -> N
     assert ".".join(found.groups()) == VERSION
 
 
+def test_the_paper_has_it_and_asks_for_it() -> None:
+    """It stands on greywhale's rooms as they are in this very version."""
+    assert PAPER["version"] == VERSION
+    assert f"greywhale=={VERSION}" in PAPER["dependencies"]
+
+
 def test_what_is_installed_has_it_too() -> None:
     """If not: the set-up installs it anew."""
-    assert greywhale.__version__ == metadata.version("greywhale") == VERSION
+    assert greywhale.__version__ == metadata.version("greywhale") == metadata.version("greywhale-paper") == VERSION
     answer = CliRunner().invoke(command_line, ["--version"])
     assert answer.output == f"greywhale, version {VERSION}\n"

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from tools.setup import __main__ as setup
-from tools.setup import extensions, firmware, page, page_modules, platformio, stamps, system, venv
+from tools.setup import extensions, firmware, page, page_modules, paper, platformio, stamps, system, venv
 from tools.setup.console import SetupError
 
 
@@ -26,7 +26,7 @@ def done(monkeypatch: pytest.MonkeyPatch) -> list[str]:
             branch()
         taken.append("}")
 
-    for room in (firmware, page, page_modules, platformio, system, venv):
+    for room in (firmware, page, page_modules, paper, platformio, system, venv):
         monkeypatch.setattr(room, "step", note(room.__name__.rpartition(".")[2]))
     monkeypatch.setattr(extensions, "build", note("extensions"))
     monkeypatch.setattr(extensions, "install", note("installation"))
@@ -43,7 +43,7 @@ def test_the_venv_is_whole_before_anything_uses_it_and_written_by_nobody_meanwhi
     before, beside, after = done[:2], done[done.index("{") + 1 : done.index("}")], done[done.index("}") + 1 :]
     assert before == ["system", "venv"]
     assert set(beside) == {"extensions", "platformio", "firmware", "page", *(["page_modules"] if checks else [])}
-    assert after == ["installation"]
+    assert after == ["installation", "paper"]
 
 
 def test_a_build_leaves_the_venv_alone(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:

@@ -8,8 +8,8 @@ from pathlib import Path
 
 # What greywhale and its libraries import beside Python's own modules, and what Python and reportlab look for.
 OTHERS = (
-    *("click", "cma", "greywhale_sim", "matplotlib", "numpy", "pydantic", "reportlab", "scipy", "serial"),
-    *("sitecustomize", "usercustomize", "reportlab_settings"),
+    *("click", "cma", "greywhale_paper", "greywhale_sim", "matplotlib", "numpy", "pydantic", "reportlab", "scipy"),
+    *("serial", "sitecustomize", "usercustomize", "reportlab_settings"),
 )
 # A picture with these would have TeX run, or its paper red; the last line is no UTF-8, which ends Matplotlib's import.
 MATPLOTLIBRC = b"text.usetex: True\nfigure.facecolor: red\nsavefig.facecolor: red\n# \xff\n"

@@ -14,6 +14,7 @@ import click
 from pydantic import BaseModel
 from sphinx.application import Sphinx
 
+from greywhale.cli.verbs import place_of
 from greywhale_sim.faults import markdown_table
 from tools.docs.schemas import schema_name, write_schemas
 
@@ -21,7 +22,7 @@ CODES = "Exit codes: 0 done; 1 failed; 2 bad usage; 130 interrupted (motors off,
 OWN_CODES = {"doctor": "Exit codes: 0 nothing must be mended; 1 something must, or failed; 2 bad usage."}
 HELP = """
 ```{{eval-rst}}
-.. click:: greywhale.cli.{verb}:command
+.. click:: {place}
    :prog: greywhale {verb}
    :nested: full
 ```
@@ -54,7 +55,7 @@ def add_help(app: Sphinx, docname: str, source: list[str]) -> None:
     """End the page of a verb with the verb's own help, that of `sim` with a table of the mistakes it stages first."""
     folder, _, verb = docname.partition("/")
     if folder == "verbs" and verb != "index":
-        source[0] += f"\n{markdown_table()}\n" * (verb == "sim") + HELP.format(verb=verb)
+        source[0] += f"\n{markdown_table()}\n" * (verb == "sim") + HELP.format(verb=verb, place=place_of(verb))
 
 
 def shorten_arrays(

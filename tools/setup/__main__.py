@@ -15,7 +15,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 from tools import ROOT
-from tools.setup import extensions, firmware, page, page_modules, platformio, stamps, system, venv
+from tools.setup import extensions, firmware, page, page_modules, paper, platformio, stamps, system, venv
 from tools.setup.console import SetupError, say, side_by_side
 
 
@@ -60,6 +60,7 @@ def steps(with_page: bool, checks: bool) -> None:
 
     side_by_side(lambda: extensions.build(checks), build_firmware, build_page)
     extensions.install(checks)
+    paper.step()
 
 
 def main(arguments: list[str]) -> int:

@@ -14,7 +14,6 @@ from pathlib import Path
 import numpy as np
 
 from greywhale.arm import ArmParameters, Potentiometers
-from greywhale.arm.draw import draw_arm
 from greywhale.base.types import Floats
 from greywhale.files import controller
 from greywhale.files.arm import load_arm
@@ -24,6 +23,7 @@ from greywhale.files.trajectory import Trajectory
 from greywhale.loop import Experiment, human_reaches
 from greywhale.protocol.firmware import ANGLE_LSB, JOINTS, pwm_steps
 from greywhale.protocol.table import ParameterTable
+from greywhale_paper.work.drawn_arms import draw_arm
 from tools import ROOT
 
 TABLES = ROOT / "shared" / "fuzzy_tables"

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-import importlib
+import pkgutil
 from pathlib import Path
 
 import click
 
-from greywhale.cli import tracing
+from greywhale.base.errors import UserError
+from greywhale.cli import foreign, tracing
 from greywhale.cli.group import Group
 from greywhale.cli.output import FILE, QUIET, option
 
-# Each verb, which has a module in this folder, and what it does.
+# Each verb that has a module in this folder, and what it does.
 VERBS = {
     "demo": "The whole story on the simulated bench in one go, pictures at the end.",
     "sim": "Start the simulated bench and print its serial port.",
@@ -35,28 +36,45 @@ VERBS = {
     "tune": "Find controllers for a model: a controller.toml for upload.",
     "arm": "Make an arm.toml: from a ruler, a scale and data sheets, or from a URDF.",
     "export": "Write a controller as .fis (MATLAB), an arm as URDF or MJCF.",
-    "reproduce": "The paper from end to end: every table and figure beside ours.",
-    "compare": "Compare optimisers at equal budgets, over many seeds.",
 }
+
+
+def all_verbs() -> dict[str, str]:
+    """These verbs and those of other distributions, each with what it does. No other takes the name of one of these."""
+    others = {name: foreign.does(entry) for name, entry in foreign.find().items() if name not in VERBS}
+    return VERBS | others
+
+
+def place_of(verb: str) -> str:
+    """Where the click command of a verb is: module:name."""
+    return _place(verb) if verb in VERBS else foreign.place_of(foreign.find()[verb])
+
+
+def _place(verb: str) -> str:
+    return f"{__package__}.{verb}:command"
 
 
 class Verbs(Group):
     """A group whose commands are imported on demand."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
-        return list(VERBS)
+        return list(VERBS | foreign.find())
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
-        if cmd_name not in VERBS:
-            return None
-        module = importlib.import_module(f"greywhale.cli.{cmd_name}")
-        command = module.command
-        assert isinstance(command, click.Command)
-        return command
+        if cmd_name in VERBS:
+            command = pkgutil.resolve_name(_place(cmd_name))
+            assert isinstance(command, click.Command)
+            return command
+        try:
+            return foreign.command_of(cmd_name)
+        except UserError:
+            if ctx.resilient_parsing:  # the completion of a shell, which has no place for a sentence
+                return None
+            raise
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         with formatter.section("Verbs"):
-            formatter.write_dl(list(VERBS.items()))
+            formatter.write_dl(list(all_verbs().items()))
 
 
 @click.group(cls=Verbs, context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})

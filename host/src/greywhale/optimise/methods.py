@@ -14,7 +14,6 @@ from greywhale.optimise.box import Box
 from greywhale.optimise.cma_es import CmaEs
 from greywhale.optimise.differential_evolution import DifferentialEvolution
 from greywhale.optimise.grey_wolf import GreyWolf, GreyWolfWhale, GreyWolfWhaleAsPrinted
-from greywhale.optimise.nevergrad_choice import NevergradChoice
 from greywhale.optimise.optimiser import History, Optimiser
 from greywhale.optimise.shift_invariant import ShiftInvariantWolfWhale
 from greywhale.optimise.swarm import RandomSearch, Swarm
@@ -34,8 +33,6 @@ METHODS: dict[str, type[Optimiser]] = {
         RandomSearch,
     )
 }
-# Methods of packages that are not installed by default.
-PEERS: dict[str, type[Optimiser]] = {NevergradChoice.name: NevergradChoice}
 # At 500 evaluations on shifted functions it is ahead of differential evolution; the figures are in docs/optimise.md.
 DEFAULT = ShiftInvariantWolfWhale.name
 
@@ -65,7 +62,7 @@ class Minimum:
 
 
 def create(
-    method: str,
+    method: str | type[Optimiser],
     lower: ArrayLike,
     upper: ArrayLike,
     *,
@@ -75,17 +72,18 @@ def create(
     start: ArrayLike | None = None,
     **options: Any,
 ) -> Optimiser:
-    """Make an optimiser to ask and tell.
+    """Make an optimiser to ask and tell: one of METHODS by its name, or of a class of your own.
 
     Without `pack` it has the method's own size. `start` are points (rows) that the first pack must hold; `options` are
     the method's.
     """
-    known = METHODS | PEERS
-    if method not in known:
-        raise ValueError(f"there is no method {method!r}; there are {', '.join(known)}")
+    if isinstance(method, str):
+        if method not in METHODS:
+            raise ValueError(f"there is no method {method!r}; there are {', '.join(METHODS)}")
+        method = METHODS[method]
     if pack is not None:
         options["pack"] = pack
-    return known[method](Box(lower, upper), budget, np.random.default_rng(seed), start=start, **options)
+    return method(Box(lower, upper), budget, np.random.default_rng(seed), start=start, **options)
 
 
 def minimise(
@@ -93,7 +91,7 @@ def minimise(
     lower: ArrayLike,
     upper: ArrayLike,
     *,
-    method: str = DEFAULT,
+    method: str | type[Optimiser] = DEFAULT,
     budget: int = 500,
     seed: int | np.random.Generator = 0,
     pack: int | None = None,
@@ -114,7 +112,7 @@ def minimise(
             if callback is not None and callback(Step(optimiser.evaluations, budget, best.x.copy(), best.cost)):
                 stopped = "callback"
                 break
-    return Minimum(method, best.x, best.cost, optimiser.evaluations, optimiser.history, stopped)
+    return Minimum(optimiser.name, best.x, best.cost, optimiser.evaluations, optimiser.history, stopped)
 
 
 def mapped(

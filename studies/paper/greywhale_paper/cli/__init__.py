@@ -1,0 +1,1 @@
+"""The verbs that `greywhale` finds here: reproduce and compare."""

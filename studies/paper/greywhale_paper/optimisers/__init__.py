@@ -1,0 +1,1 @@
+"""Optimisers side by side on standard functions, at equal budgets."""
