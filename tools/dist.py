@@ -1,7 +1,8 @@
-"""Builds the source distribution and wheels: `python -m tools.dist [--out FOLDER] [--python PYTHON ...]`.
+"""Builds both packages, source distributions and wheels: `python -m tools.dist [--out FOLDER] [--python PYTHON ...]`.
 
-Each wheel is built from the source distribution, as a stranger's pip would do it. auditwheel then names
-the oldest C library that it runs with, and would copy libraries into it that not every Linux has.
+Each wheel is built from its source distribution, as a stranger's pip would do it. Of greywhale's, auditwheel then names
+the oldest C library that it runs with, and would copy libraries into it that not every Linux has. greywhale-paper is
+Python alone: one wheel serves all.
 """
 
 from __future__ import annotations
@@ -14,17 +15,18 @@ import tempfile
 from pathlib import Path
 
 from tools import ROOT
-from tools.setup import venv
+from tools.setup import paper, venv
 from tools.setup.console import SetupError, run, say
 
 OUT = ROOT / "build" / "dist"
+FOR_ALL = "-py3-none-any.whl"  # the name of a wheel for every Python and every machine
 SDIST = "import sys; from scikit_build_core.build import build_sdist; build_sdist(sys.argv[1])"
 
 
-def build_sdist(out: Path) -> Path:
-    """The source distribution, in `out`."""
-    run([venv.PYTHON, "-c", SDIST, out], what="The source distribution", cwd=ROOT)
-    (made,) = out.glob("greywhale-*.tar.gz")
+def build_sdist(package: str, source: Path, out: Path) -> Path:
+    """The source distribution of a package, in `out`."""
+    run([venv.PYTHON, "-c", SDIST, out], what=f"The source distribution of {package}", cwd=source)
+    (made,) = out.glob(f"{package}-*.tar.gz")
     return made
 
 
@@ -35,24 +37,37 @@ def build_wheel(sdist: Path, out: Path, python: Path = venv.PYTHON) -> Path:
         folder = Path(name)
         pip = [str(python), "-m", "pip", "wheel", "--quiet", "--disable-pip-version-check", "--no-deps", *own]
         run([*pip, "--wheel-dir", name, str(sdist)], what=f"The wheel of {sdist.name}", env=venv.environment())
-        (raw,) = folder.iterdir()
-        auditwheel = [str(venv.PYTHON), "-m", "auditwheel", "repair", "--wheel-dir", str(folder / "repaired"), str(raw)]
-        run(auditwheel, what=f"auditwheel repair of {raw.name}", env=venv.environment())
-        (made,) = (folder / "repaired").iterdir()
+        (made,) = folder.iterdir()
+        if not made.name.endswith(FOR_ALL):
+            repaired = folder / "repaired"
+            auditwheel = [str(venv.PYTHON), "-m", "auditwheel", "repair", "--wheel-dir", str(repaired), str(made)]
+            run(auditwheel, what=f"auditwheel repair of {made.name}", env=venv.environment())
+            (made,) = repaired.iterdir()
         return Path(shutil.move(made, out / made.name))
 
 
-def build_all(out: Path, pythons: list[Path]) -> list[Path]:
-    """The source distribution, and a wheel for each Python; what was made. Older ones in `out` are removed."""
-    out.mkdir(parents=True, exist_ok=True)
-    for old in (*out.glob("greywhale*.whl"), *out.glob("greywhale*.tar.gz")):
-        old.unlink()
-    sdist = build_sdist(out)
+def build_greywhale(out: Path, pythons: list[Path]) -> list[Path]:
+    """The source distribution, and a wheel for each Python."""
+    sdist = build_sdist("greywhale", ROOT, out)
     return [sdist, *(build_wheel(sdist, out, python) for python in pythons)]
 
 
+def build_paper(out: Path) -> list[Path]:
+    """The source distribution of greywhale-paper, and its wheel."""
+    sdist = build_sdist("greywhale_paper", paper.FOLDER, out)
+    return [sdist, build_wheel(sdist, out)]
+
+
+def build_all(out: Path, pythons: list[Path]) -> list[Path]:
+    """Both packages; what was made. Older ones in `out` are removed."""
+    out.mkdir(parents=True, exist_ok=True)
+    for old in (*out.glob("greywhale*.whl"), *out.glob("greywhale*.tar.gz")):
+        old.unlink()
+    return [*build_greywhale(out, pythons), *build_paper(out)]
+
+
 def main() -> int:
-    parser = argparse.ArgumentParser(description="Builds the source distribution and wheels.")
+    parser = argparse.ArgumentParser(description="Builds source distributions and wheels of both packages.")
     parser.add_argument("--out", type=Path, default=OUT, help="folder for them (default: build/dist)")
     parser.add_argument("--python", type=Path, action="append", help="build for this Python; may be repeated")
     options = parser.parse_args()

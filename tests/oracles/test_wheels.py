@@ -1,7 +1,7 @@
 """A pip installation is whole: in an empty environment without compiler, PlatformIO and checkout, it works.
 
-The wheel is built from the source distribution, as a stranger's pip would do it, and nothing is fetched. Where it is
-for the stable ABI, it is installed into the Pythons that GREYWHALE_OTHER_PYTHONS names as well.
+The wheels are built from the source distributions, as a stranger's pip would do it, and nothing is fetched. Where
+greywhale's is for the stable ABI, it is installed into the Pythons that GREYWHALE_OTHER_PYTHONS names as well.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ import sys
 import tarfile
 import urllib.request
 import zipfile
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -29,6 +30,16 @@ from tools.setup import platformio
 OWN = Path(sys.executable)
 PYTHONS = [OWN, *(Path(python) for python in os.environ.get("GREYWHALE_OTHER_PYTHONS", "").split(os.pathsep) if python)]
 CONTROLLERS = {"before_tuning", "table_8", "table_9", "table_10"}
+# An empty report, as page and as PDF.
+WRITE = """
+from pathlib import Path
+from greywhale_paper.pages.document import Document
+from greywhale_paper.render.html import write_html
+from greywhale_paper.render.pdf import write_pdf
+made = Document("The paper", ("Nothing is in it.",), ())
+write_html(made, Path("report.html"))
+write_pdf(made, Path("report.pdf"))
+"""
 pytestmark = pytest.mark.timeout(1200)  # of which building the extensions takes the most
 
 
@@ -68,17 +79,24 @@ class Installation:
 @pytest.fixture(scope="session")
 def built(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
     """The source distribution and the wheel."""
-    sdist, wheel = dist.build_all(tmp_path_factory.mktemp("dist"), [dist.venv.PYTHON])
+    sdist, wheel = dist.build_greywhale(tmp_path_factory.mktemp("dist"), [dist.venv.PYTHON])
     return sdist, wheel
 
 
-def install(folder: Path, wheel: Path, python: Path = OWN) -> Installation:
-    """A new environment with the wheel and what it depends on."""
+@pytest.fixture(scope="session")
+def paper(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
+    """Those of greywhale-paper."""
+    sdist, wheel = dist.build_paper(tmp_path_factory.mktemp("paper"))
+    return sdist, wheel
+
+
+def install(folder: Path, wheels: Sequence[Path], python: Path = OWN) -> Installation:
+    """A new environment with the wheels and what they depend on."""
     subprocess.run([python, "-m", "venv", "--without-pip", folder / "env"], check=True)
     pip = [sys.executable, "-m", "pip", "--python", folder / "env/bin/python", "--disable-pip-version-check"]
     found = wheelhouse.place(python)
     offline = ["--no-index", "--find-links", found, "--no-compile"]  # a module is compiled when it is imported
-    subprocess.run([*pip, "install", "--quiet", *offline, wheel], check=True)
+    subprocess.run([*pip, "install", "--quiet", *offline, *wheels], check=True)
     return Installation(folder / "env")
 
 
@@ -87,7 +105,7 @@ def installed(
     built: tuple[Path, Path], request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
 ) -> Installation:
     wheelhouse.step(request.param)
-    return install(tmp_path_factory.mktemp("installed"), built[1], request.param)
+    return install(tmp_path_factory.mktemp("installed"), [built[1]], request.param)
 
 
 def names_in(archive: Path) -> set[str]:
@@ -127,6 +145,47 @@ def test_the_wheel_says_its_licences(built: tuple[Path, Path]) -> None:
     assert licences == {"LICENSE", "LICENSES/GPL-2.0-or-later.txt", "NOTICE"}
     assert "Apache License" in read(wheel, "/licenses/LICENSE")
     assert "License-Expression: Apache-2.0 AND GPL-2.0-or-later" in read(wheel, "/METADATA")
+
+
+def test_the_papers_wheel_is_for_all_and_holds_its_code_and_its_licence_and_nothing_else(
+    built: tuple[Path, Path], paper: tuple[Path, Path]
+) -> None:
+    _, wheel = paper
+    names = names_in(wheel)
+    source = ROOT / "studies" / "paper"
+    code = {str(path.relative_to(source)) for path in source.glob("greywhale_paper/**/*") if path.is_file()}
+    assert {name for name in names if ".dist-info/" not in name} == {name for name in code if "__pycache__" not in name}
+    assert wheel.name.endswith("-py3-none-any.whl")
+    assert read(wheel, "/licenses/LICENSE") == (ROOT / "LICENSE").read_text(encoding="utf-8")
+    facts, greywhales = read(wheel, "/METADATA"), read(built[1], "/METADATA")
+    assert "License-Expression: Apache-2.0\n" in facts
+    assert "Requires-Dist: reportlab" in facts
+    assert "reportlab" not in greywhales
+
+
+def test_the_papers_sources_hold_the_licence_itself(paper: tuple[Path, Path]) -> None:
+    """And no link to where it is in this repository."""
+    with tarfile.open(paper[0]) as sources:
+        (licence,) = (one for one in sources.getmembers() if one.name.endswith("/LICENSE"))
+        assert licence.isfile()
+        assert licence.size == (ROOT / "LICENSE").stat().st_size
+
+
+def test_the_papers_verbs_are_there_once_its_wheel_is(
+    built: tuple[Path, Path], paper: tuple[Path, Path], tmp_path: Path
+) -> None:
+    alone, both = install(tmp_path / "alone", built[1:]), install(tmp_path / "both", [built[1], paper[1]])
+    compare = ("compare", "--functions", "sphere", "--methods", "de", "--budget", "20", "--seeds", "1")
+    refused = alone.run("greywhale", *compare)
+    assert refused.returncode == 1
+    assert "install it: pip install greywhale-paper." in " ".join(refused.stderr.split())
+    assert "reproduce" not in alone.run("greywhale", "--help").stdout
+    assert both.ask(*compare)["seeds"] == 1
+    assert "  reproduce " in both.run("greywhale", "--help").stdout
+    assert both.run("greywhale", "reproduce", "--help").returncode == 0
+    written = both.run("python", "-c", WRITE)
+    assert written.returncode == 0, written.stderr
+    assert (both.folder / "report.pdf").read_bytes().startswith(b"%PDF")
 
 
 def test_tags_say_for_which_python_and_which_linux_a_wheel_is(built: tuple[Path, Path]) -> None:

@@ -1,4 +1,4 @@
-"""Collects greywhale's dependencies as wheels in build/wheelhouse: for installations in a test."""
+"""Collects the dependencies of greywhale and greywhale-paper as wheels in build/wheelhouse: for installations in a test."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def place(python: Path = venv.PYTHON) -> Path:
 
 def step(python: Path = venv.PYTHON) -> None:
     """Fetch them for this Python."""
-    needed, folder = lock.runtime(), place(python)
+    needed, folder = [*lock.runtime(), *lock.paper()], place(python)
     wanted = stamps.digest([venv.REQUIREMENTS], *needed)
     stamp = f"wheelhouse-{folder.name}"
     if stamps.is_current(stamp, wanted) and folder.is_dir():
