@@ -17,7 +17,7 @@ from tools import ROOT
 from tools.setup import stamps
 
 FOLDER = ROOT / "build" / "bench"
-SOURCES = ("firmware/lib", "host/native", "host/src", "shared", "sim", "tools/benchmarks")
+SOURCES = ("firmware/lib", "host/native", "host/src", "shared", "sim", "studies", "tools/benchmarks")
 
 
 def repeat(name: str, tasks: Sequence[Task], workers: int = 1) -> dict[str, Any]:
