@@ -1,4 +1,4 @@
-"""Collects the dependencies of greywhale and greywhale-paper as wheels in build/wheelhouse: for installations in a test."""
+"""Collects what greywhale and greywhale-paper depend on as wheels in build/wheelhouse: to install in tests."""
 
 from __future__ import annotations
 

@@ -33,7 +33,7 @@ _NOT_HERE = {
 
 
 def catalogue() -> list[VerbFacts]:
-    """What a page's forms are made from."""
+    """The verbs from which a page makes its forms."""
     return [_facts(verb) for verb in VERBS]
 
 

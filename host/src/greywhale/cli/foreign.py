@@ -25,7 +25,7 @@ logger = logging.getLogger(__name__)
 
 @dataclass(frozen=True)
 class Verb:
-    """What a distribution says of a verb that it brings."""
+    """A verb that another distribution brings, as that describes it."""
 
     does: str  # one sentence, for --help
     command: str  # where its click command is: module:name
@@ -46,7 +46,7 @@ def find() -> dict[str, EntryPoint]:
 
 
 def does(entry: EntryPoint) -> str:
-    """What a verb does; where it cannot be loaded, that."""
+    """The purpose of a verb; where the verb cannot be loaded, a sentence that says so."""
     try:
         return _verb(entry).does
     except UserError as error:
@@ -54,7 +54,7 @@ def does(entry: EntryPoint) -> str:
 
 
 def place_of(entry: EntryPoint) -> str:
-    """Where the click command of a verb is: module:name."""
+    """The place of a verb's click command: module:name."""
     return _verb(entry).command
 
 

@@ -46,7 +46,7 @@ def all_verbs() -> dict[str, str]:
 
 
 def place_of(verb: str) -> str:
-    """Where the click command of a verb is: module:name."""
+    """The place of a verb's click command: module:name."""
     return _place(verb) if verb in VERBS else foreign.place_of(foreign.find()[verb])
 
 
