@@ -134,6 +134,18 @@ def test_the_paper_imports_only_public_rooms() -> None:
         assert "_native" not in text, name
 
 
+def test_a_commissioning_and_an_adaptation_stand_beside_each_other() -> None:
+    """What both need lies in rooms below: neither imports the other."""
+    jobs = ("commission", "adapt")
+    crossing = {
+        (name, target)
+        for name, targets in graph(SOURCE).items()
+        for target in targets
+        if {name.split(".")[1], target.split(".")[1]} == set(jobs)
+    }
+    assert crossing == set()
+
+
 def page_graph() -> dict[str, set[str]]:
     """Every module of the page with those that it imports, by their paths, for the type checker too."""
     found = {}

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import pytest
 
-from greywhale.adapt.change import CLOSE_RAD, REST_SAMPLES, STILL_RAD, RestWatch
+from greywhale.adapt.change import RestWatch
+from greywhale.adapt.limits import ADAPTATION_LIMITS
 from greywhale.board.stream import Received
 from greywhale.protocol import schema
 from greywhale.protocol.firmware import ANGLE_LSB
 
+LIMITS = ADAPTATION_LIMITS.changes
 
-def watch(leader_rad: float, follower_rad: float, moves_rad: float, count: int = REST_SAMPLES) -> RestWatch:
+
+def watch(leader_rad: float, follower_rad: float, moves_rad: float, count: int = LIMITS.rest_samples) -> RestWatch:
     """After samples in which joint 2's leader goes evenly over `moves_rad`, its follower always as far behind."""
     watching = RestWatch()
     for number in range(count):
@@ -25,10 +28,10 @@ def watch(leader_rad: float, follower_rad: float, moves_rad: float, count: int =
     ("watching", "resting"),
     [
         (watch(0.3, 0.25, 0.0), True),
-        (watch(0.3, 0.25, 0.8 * STILL_RAD), True),
-        (watch(0.3, 0.25, 1.5 * STILL_RAD), False),
-        (watch(0.3, 0.3 - 1.2 * CLOSE_RAD, 0.0), False),
-        (watch(0.3, 0.25, 0.0, REST_SAMPLES - 20), False),
+        (watch(0.3, 0.25, 0.8 * LIMITS.still_rad), True),
+        (watch(0.3, 0.25, 1.5 * LIMITS.still_rad), False),
+        (watch(0.3, 0.3 - 1.2 * LIMITS.close_rad, 0.0), False),
+        (watch(0.3, 0.25, 0.0, LIMITS.rest_samples - 20), False),
     ],
 )
 def test_a_rest_is_still_and_close_for_a_while(watching: RestWatch, resting: bool) -> None:

@@ -7,15 +7,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from greywhale.adapt import decide
-from greywhale.adapt.decide import ENOUGH, Adaptation, Outcome
-from greywhale.adapt.foresee import LEAD, foresee, judged_of
+from greywhale.adapt.decide import Adaptation, Outcome
+from greywhale.adapt.foresee import foresee, judged_of
 from greywhale.adapt.gain import Scale
+from greywhale.adapt.limits import ADAPTATION_LIMITS, AdaptationLimits
 from greywhale.adapt.live_model import LiveModel
 from greywhale.adapt.propose import Proposal, Task, work_on
 from greywhale.base.types import Controllers
 from greywhale.loop.controllers import controllers_of
 from greywhale.protocol.table import CONTROLLER_COLUMNS
+from greywhale.tune.model import Model
 from tests.adapt.conftest import TABLE
 from tests.adapt.simulated import Work, with_gain, work_for
 from tests.support.arms import make_arm
@@ -55,7 +56,7 @@ def test_a_search_begins_once_enough_was_seen_and_only_one_at_a_time(adaptation:
     work_for(adaptation, work, 2)
     assert adaptation.task() is None
     task = task_after_work(adaptation, work)
-    assert len(judged_of(task.recent)) >= ENOUGH
+    assert len(judged_of(task.recent)) >= ADAPTATION_LIMITS.decisions.first_search_s
     work_for(adaptation, work, 2)
     assert adaptation.task() is None, "one is under way"
     adaptation.answer(proposal_of(task, BEFORE, 1.0))
@@ -104,15 +105,18 @@ def test_a_worse_set_goes_back_within_seconds(adaptation: Adaptation, work: Work
     assert adaptation.wish.table == adaptation.kept == TABLE
 
 
-def test_a_set_that_is_the_same_goes_back_untold(
-    adaptation: Adaptation, work: Work, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(decide, "TRIAL_MOST", 28)
+def deciding(**other: float) -> AdaptationLimits:
+    """The usual limits, but for some of the decisions'."""
+    return replace(ADAPTATION_LIMITS, decisions=replace(ADAPTATION_LIMITS.decisions, **other))
+
+
+def test_a_set_that_is_the_same_goes_back_untold(model: Model, work: Work) -> None:
+    adaptation = Adaptation(model, TABLE, budget=1, limits=deciding(max_trial_s=28))
     propose(adaptation, work, 1.001)
     work_for(adaptation, work, 1)
     work_for(adaptation, work, 6)
     (tried,) = adaptation.trials
-    assert tried.outcome is Outcome.UNTOLD
+    assert tried.outcome is Outcome.INCONCLUSIVE
     assert adaptation.running == TABLE
 
 
@@ -131,7 +135,7 @@ def test_a_load_taken_up_with_the_set_from_the_start_is_no_fault_of_the_next(
     propose(adaptation, work, 1.6)
     work.arm = make_arm(tip={"mass": 0.2})
     work_for(adaptation, work, 1)
-    for stretch in work.piece(adaptation.running)[: LEAD + 1]:
+    for stretch in work.piece(adaptation.running)[: ADAPTATION_LIMITS.gain.lead_s + 1]:
         adaptation.take(stretch)
     assert adaptation.wish is None
     assert adaptation.activity == "trying a set"
@@ -177,12 +181,11 @@ def test_nothing_is_tried_while_a_reading_contradicts_its_voltages(adaptation: A
     assert "joint 1's potentiometer turns 0.6 times as far" in adaptation.doubt
 
 
-def test_one_fit_that_contradicts_the_readings_may_be_wrong(
-    adaptation: Adaptation, work: Work, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_one_fit_that_contradicts_the_readings_may_be_wrong(model: Model, work: Work) -> None:
+    # It is taken, whatever it says of what was measured.
+    adaptation = Adaptation(model, TABLE, budget=1, limits=deciding(max_log_misfit=100.0))
     propose(adaptation, work, 1.2)
     work_for(adaptation, work, 6)
-    monkeypatch.setattr(decide, "BELIEVED", 100.0)  # whatever it says of what was measured
     good = adaptation.live
     turned = [np.log(1.7) if name in ("joint2.inertia", "joint2.damping") else 0.0 for name in good.space.names]
     bad = replace(good, x=good.x + turned)
@@ -212,7 +215,7 @@ def test_a_set_goes_back_when_a_reading_comes_to_contradict_its_voltages(
                 adaptation.answer(proposal_of(asked, same, 1.0) if asked.budget else work_on(asked))
     assert adaptation.wish.table == adaptation.kept == TABLE
     (tried,) = adaptation.trials
-    assert tried.outcome is Outcome.UNTOLD
+    assert tried.outcome is Outcome.INCONCLUSIVE
     assert "joint 3's potentiometer turns 0.6 times as far" in tried.why
 
 

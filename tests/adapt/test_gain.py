@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from greywhale.adapt.gain import GROUP, LEAST_GROUPS, Ratio, Scale
+from greywhale.adapt.gain import LEAST_GROUPS, Ratio, Scale
+from greywhale.adapt.limits import ADAPTATION_LIMITS
 from greywhale.base.types import Floats
 
 
@@ -30,9 +31,10 @@ def test_a_gain_of_a_third_is_told_within_forty_stretches() -> None:
 
 
 def test_too_few_stretches_tell_nothing() -> None:
-    above, below = drawn(1, 0.1, GROUP * LEAST_GROUPS - 1)
+    enough = ADAPTATION_LIMITS.gain.group_s * LEAST_GROUPS
+    above, below = drawn(1, 0.1, enough - 1)
     assert Ratio.of(above, below).within(0.0) == (0.0, np.inf)
-    above, below = drawn(1, 0.1, GROUP * LEAST_GROUPS)
+    above, below = drawn(1, 0.1, enough)
     assert Ratio.of(above, below).within(0.0)[1] < 1.0
 
 

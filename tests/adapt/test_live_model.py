@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from greywhale.adapt.foresee import foresee, judged_of
-from greywhale.adapt.live_model import PLANTS, LiveModel
+from greywhale.adapt.limits import ADAPTATION_LIMITS
+from greywhale.adapt.live_model import LiveModel
 from greywhale.adapt.stretch import Stretch
 from greywhale.arm import ArmParameters
 from greywhale.files.arm import default_arm, load_arm
@@ -63,7 +64,7 @@ def test_friction_that_grew_is_found(grown: list[Stretch]) -> None:
     refitted = LIVE.refit(grown, TABLE, 1)
     friction = [ratio for name, ratio in refitted.changes().items() if name.endswith("coulomb")]
     assert friction == pytest.approx([1.4] * 4, rel=0.08)
-    assert len(refitted.plants) == PLANTS
+    assert len(refitted.plants) == ADAPTATION_LIMITS.model.plants
     assert missed(LIVE, grown) > 0.15
     assert missed(refitted, grown) < 0.1
 

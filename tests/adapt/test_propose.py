@@ -10,7 +10,8 @@ import pytest
 
 from greywhale.adapt import propose as propose_module
 from greywhale.adapt.decide import Adaptation
-from greywhale.adapt.propose import EVERY, FASTER, NEWEST, Task, motion_of, propose
+from greywhale.adapt.limits import ADAPTATION_LIMITS
+from greywhale.adapt.propose import Task, motion_of, propose
 from greywhale.base.types import Controllers
 from greywhale.files.arm import default_arm
 from greywhale.files.trajectory import Trajectory
@@ -21,8 +22,10 @@ from tests.adapt.conftest import TABLE
 from tests.adapt.simulated import Work, work_for
 from tests.adapt.test_decide import stiffer
 from tests.support.arms import make_arm
+from tests.support.limits import copy_of, reads_of
 
 pytestmark = pytest.mark.slow
+LIMITS = ADAPTATION_LIMITS.proposals
 
 
 @dataclass
@@ -99,10 +102,26 @@ def test_what_was_seen_before_a_load_was_taken_up_is_left_out(
 
 def test_it_trains_on_the_longest_stretches_of_this_person_and_on_their_way_back_faster(task: Task) -> None:
     motion: Trajectory = motion_of(task.recent)
-    assert motion.duration_s == pytest.approx(NEWEST * (1.0 + 1.0 / FASTER), abs=0.02)
-    there, back = np.split(motion.angles, [round(NEWEST / TICK_S) // EVERY])
-    np.testing.assert_allclose(there[-1], task.recent[-1].leader[-EVERY:].mean(axis=0))
+    assert motion.duration_s == pytest.approx(LIMITS.newest_s * (1.0 + 1.0 / LIMITS.faster), abs=0.02)
+    there, back = np.split(motion.angles, [round(LIMITS.newest_s / TICK_S) // LIMITS.row_every_ticks])
+    np.testing.assert_allclose(there[-1], task.recent[-1].leader[-LIMITS.row_every_ticks :].mean(axis=0))
     np.testing.assert_allclose(
-        np.abs(np.diff(motion.angles, axis=0)).max(), FASTER * np.abs(np.diff(there, axis=0)).max(), rtol=0.1
+        np.abs(np.diff(motion.angles, axis=0)).max(), LIMITS.faster * np.abs(np.diff(there, axis=0)).max(), rtol=0.1
     )
     np.testing.assert_allclose(back[1::2], there[-4::-3][: len(back[1::2])])
+
+
+def test_a_session_reads_no_limits_but_those_that_it_was_handed(
+    model: Model, work: Work, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    search(stiffer(1.6), monkeypatch)
+    own = copy_of(ADAPTATION_LIMITS)
+    with reads_of(ADAPTATION_LIMITS) as read:
+        adaptation = Adaptation(model, TABLE, budget=1, limits=own)
+        work_for(adaptation, work, 4)
+        found = adaptation.task()
+        assert found is not None
+        adaptation.answer(propose(found))
+        work_for(adaptation, work, 3)
+        assert adaptation.on_trial or adaptation.trials
+    assert read == set()

@@ -8,7 +8,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from greywhale.adapt.quiet import SHORTEST, Swings, find_excess
+from greywhale.adapt.limits import ADAPTATION_LIMITS
+from greywhale.adapt.quiet import Swings, find_excess
 from greywhale.adapt.stretch import ROWS, Stretch
 
 SUPPLY_V = 15.0
@@ -60,6 +61,6 @@ def test_what_was_there_before_is_allowed() -> None:
 
 
 def test_a_short_record_tells_nothing() -> None:
-    assert Swings.of(record()[: SHORTEST - 1], SUPPLY_V) is None
+    assert Swings.of(record()[: ADAPTATION_LIMITS.samples.least_swing_record_s - 1], SUPPLY_V) is None
     parted = [replace(one, joined=False) for one in record()]
     assert Swings.of(parted, SUPPLY_V) is None

@@ -14,8 +14,9 @@ import pytest
 from greywhale.adapt import AdaptationRequest, AdaptationResult, adapt, store_kept
 from greywhale.adapt import change as change_module
 from greywhale.adapt import run as run_module
-from greywhale.adapt.change import CLOSE_RAD, SOFT_START_MS
+from greywhale.adapt.change import SOFT_START_MS
 from greywhale.adapt.decide import Adaptation, Outcome, TriedSet, Wish
+from greywhale.adapt.limits import ADAPTATION_LIMITS
 from greywhale.adapt.propose import Task
 from greywhale.adapt.stretch import Stretch
 from greywhale.base.errors import UserError
@@ -115,7 +116,7 @@ def test_a_set_runs_from_a_rest_on_and_the_one_from_before_at_the_end(
     assert not result.stored
     assert result.changes == 1
     assert result.seconds == pytest.approx(SECONDS, abs=0.01)
-    assert 0.0 <= result.bump_rad < CLOSE_RAD
+    assert 0.0 <= result.bump_rad < ADAPTATION_LIMITS.changes.close_rad
     assert result.kept == TABLE.with_controllers(SET), "the soft start is the stored one"
     assert load(tmp_path / "adapted.toml").table() == result.kept
     assert ran == [TABLE]

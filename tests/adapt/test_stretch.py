@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from greywhale.adapt.stretch import MOST_LOST, ROWS, Collector, Stretch, chains_of, traces_of
+from greywhale.adapt.limits import ADAPTATION_LIMITS
+from greywhale.adapt.stretch import ROWS, Collector, Stretch, chains_of, traces_of
 from greywhale.board.stream import Received
 from greywhale.protocol import schema
 from greywhale.protocol.firmware import ANGLE_LSB
+
+MAX_LOST = ADAPTATION_LIMITS.samples.max_lost_samples
 
 
 def sample(tick: int, lost: int = 0) -> Received:
@@ -36,8 +39,8 @@ def test_stretches_follow_each_other_without_a_gap() -> None:
 
 
 def test_a_few_lost_samples_lie_on_the_line_between_their_neighbours() -> None:
-    ticks = [tick for tick in range(2 * ROWS + 1) if not 100 <= tick < 100 + MOST_LOST]
-    first, second = collect(ticks, {100 + MOST_LOST: MOST_LOST})
+    ticks = [tick for tick in range(2 * ROWS + 1) if not 100 <= tick < 100 + MAX_LOST]
+    first, second = collect(ticks, {100 + MAX_LOST: MAX_LOST})
     assert second.joined
     np.testing.assert_allclose(first.leader[:, 1], 2 * np.arange(ROWS) * ANGLE_LSB)
 

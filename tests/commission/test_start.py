@@ -10,11 +10,12 @@ import pytest
 
 from greywhale.base.errors import UserError
 from greywhale.commission.journal import CommissioningJournal
-from greywhale.commission.start import refuse_stuck, refuse_uncalibrated, shares_moved
+from greywhale.commission.start import refuse_stuck, shares_moved
 from greywhale.files.arm import default_arm
 from greywhale.files.log import Log
 from greywhale.files.log.layout import Origin
 from greywhale.protocol.table import ParameterTable
+from greywhale.tune.board_checks import refuse_uncalibrated
 from tests.commission.simulated import ROOM, SimulatedRig
 from tests.support.arms import make_arm
 

@@ -12,11 +12,11 @@ from greywhale.board.calibrate.match import with_board_pots
 from greywhale.board.calibrate.solve import Pose, match, slipped, solve
 from greywhale.board.calibrate.sweep import Sweep
 from greywhale.board.pots import FULL_SCALE
-from greywhale.commission.start import refuse_uncalibrated
 from greywhale.files.arm import default_arm
 from greywhale.protocol import schema
 from greywhale.protocol.firmware import ANGLE_LSB
 from greywhale.protocol.table import ParameterTable
+from greywhale.tune.board_checks import refuse_uncalibrated
 from tests.support.arms import with_joints
 from tools.support.calibrating_person import mounted_anyhow
 

@@ -12,6 +12,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from greywhale.adapt.limits import ADAPTATION_LIMITS, ChangeLimits
 from greywhale.board.device import Device
 from greywhale.board.record import BUSY_LEASE_MS
 from greywhale.board.stream import Received
@@ -21,25 +22,20 @@ from greywhale.protocol.table import ParameterTable
 
 # The soft start of a set that runs for now, the shortest that the firmware takes; a stored set keeps its own.
 SOFT_START_MS = 100
-# One parameter is staged every so many samples: the answers take less time than the samples between.
-STAGE_EVERY = 4
-# At rest leader and follower stay within STILL_RAD for so many samples, and no error is larger than CLOSE_RAD. An
-# urgent change waits for such an error only: with a larger one the arm would be left behind in the middle of a move.
-REST_SAMPLES, STILL_RAD, CLOSE_RAD = 250, 0.02, 0.12
-LOOK_EVERY = 10
 
 
 class RestWatch:
     """Sees every sample, and knows whether leader and follower rest close to each other."""
 
-    def __init__(self) -> None:
-        self._seen: deque[tuple[int, ...]] = deque(maxlen=REST_SAMPLES // LOOK_EVERY)
+    def __init__(self, limits: ChangeLimits = ADAPTATION_LIMITS.changes) -> None:
+        self._limits = limits
+        self._seen: deque[tuple[int, ...]] = deque(maxlen=limits.rest_samples // limits.look_every_samples)
         self._count = 0
         self.error = np.inf  # the largest, rad
 
     def take(self, received: Received) -> None:
         self._count += 1
-        if self._count % LOOK_EVERY == 0:
+        if self._count % self._limits.look_every_samples == 0:
             sample = received.sample
             self._seen.append((*sample.leader, *sample.follower))
             self.error = ANGLE_LSB * max(abs(a - b) for a, b in zip(sample.leader, sample.follower, strict=True))
@@ -47,16 +43,20 @@ class RestWatch:
     @property
     def resting(self) -> bool:
         full = len(self._seen) == self._seen.maxlen
-        return (
-            full and self.error < CLOSE_RAD and bool(np.ptp(np.array(self._seen), axis=0).max() < STILL_RAD / ANGLE_LSB)
-        )
+        still = self._limits.still_rad / ANGLE_LSB
+        return full and self.is_close and bool(np.ptp(np.array(self._seen), axis=0).max() < still)
+
+    @property
+    def is_close(self) -> bool:
+        """Whether no error is so large that the arm would be left behind by a change."""
+        return bool(self.error < self._limits.close_rad)
 
 
 class SetChanger:
     """Stages a set in the background of a stream of samples, and lets the board run it when asked."""
 
-    def __init__(self, device: Device) -> None:
-        self._device = device
+    def __init__(self, device: Device, limits: ChangeLimits = ADAPTATION_LIMITS.changes) -> None:
+        self._device, self._limits = device, limits
         self._table: ParameterTable | None = None
         self._staging: Iterator[int] = iter(())
         self._staged = 0
@@ -67,7 +67,7 @@ class SetChanger:
         if self._table is None or self._table.crc != table.crc:
             self._table, self._staging, self._staged = table, staging(self._device, table), 0
         self._count += 1
-        if self._count % STAGE_EVERY == 0:
+        if self._count % self._limits.stage_every_samples == 0:
             self._staged = next(self._staging, self._staged)
 
     def is_ready(self, table: ParameterTable) -> bool:

@@ -11,15 +11,12 @@ from collections.abc import Mapping
 
 from greywhale.protocol.joints import Joints
 
-# A reading is doubted that turns too little, or too far, by this factor. Of arms that were hot, worn, stiff, loaded or
-# short of supply none looked like more than 1.15; a potentiometer that lost 40 % of its gain looked like 1.5 to 1.8.
-DOUBTED = 1.35
 
-
-def find_contradiction(changes: Mapping[str, float], joints: Joints) -> str:
+def find_contradiction(changes: Mapping[str, float], joints: Joints, max_pot_error: float) -> str:
     """A clause on the first joint whose reading contradicts its voltages, "" for none.
 
-    `changes` are those of `LiveModel.changes`: what each number has become, as a multiple of the identified one.
+    `changes` are those of `LiveModel.changes`: what each number has become, as a multiple of the identified one. A
+    potentiometer that turns too little, or too far, by more than `max_pot_error` is doubted.
     """
     for joint in joints:
         inertia, damping, friction = (
@@ -27,7 +24,7 @@ def find_contradiction(changes: Mapping[str, float], joints: Joints) -> str:
         )
         too_little = min(inertia, damping) / max(1.0, friction)
         too_far = min(1.0, friction) / max(inertia, damping)
-        if max(too_little, too_far) > DOUBTED:
+        if max(too_little, too_far) > max_pot_error:
             return (
                 f"joint {joint}'s potentiometer turns {1.0 / damping:.1f} times as far as its motor's voltages say, "
                 "so nothing is kept; check that it is tight on its shaft"

@@ -6,14 +6,14 @@ It is fed with stretches of work, and says what should be computed in the backgr
     another set than that from the start runs: every few seconds a fit, since a load that is taken up is not its fault;
         one that does not explain what was measured is not believed
     trying, a gain told from chance: kept, watching with the new set
-    trying, worse or restless or nothing told after TRIAL_MOST: a wish for the set from before, watching
+    trying, worse or restless or nothing told after `max_trial_s`: a wish for the set from before, watching
     a joint's reading contradicts its voltages: nothing is tried or kept; when the next fit says so too, the set from
         the start runs again
 
-Over any half minute the error may exceed what the set from the start would have shown by LIMIT at most: a share of
+Over any half minute the error may exceed what the set from the start would have shown by `max_excess`: a share of
 that, or of its usual error where the person hardly moves. It is looked at with every stretch, and a set on trial goes
-back at once when it is above ALERT. Only a model that was fitted just now speaks against a set that was kept, or any
-above twice the LIMIT.
+back at once when it is above `alert_excess`. Only a model that was fitted just now speaks against a set that was kept,
+or any above twice `max_excess`. All numbers are in `limits.py`.
 """
 
 from __future__ import annotations
@@ -25,8 +25,9 @@ from enum import StrEnum
 
 import numpy as np
 
-from greywhale.adapt.foresee import LEAD, foresee, judged_of
-from greywhale.adapt.gain import GROUP, Ratio, Scale
+from greywhale.adapt.foresee import foresee, judged_of
+from greywhale.adapt.gain import Ratio, Scale
+from greywhale.adapt.limits import ADAPTATION_LIMITS, AdaptationLimits
 from greywhale.adapt.live_model import LiveModel
 from greywhale.adapt.propose import Proposal, Task
 from greywhale.adapt.quiet import Swings, find_excess
@@ -36,34 +37,12 @@ from greywhale.loop.controllers import controllers_of
 from greywhale.protocol.table import ParameterTable
 from greywhale.tune.model import Model
 
-# Stretches (of a second): kept in all, seen with the running set before a search, and new ones between two searches.
-KEPT, ENOUGH, APART = 60, 20, 10
-# A search needs a person at work: some joint's leader went this far (rad) in the stretches seen.
-WORK_RAD = 0.2
-# A set is judged by its last stretch, with so many before it: what the model's integral holds takes time to build up.
-LOOKED = 8
-# While another set than that from the start runs, the model is fitted to so many stretches, and so often; a verdict
-# needs one that knows the arm until FRESH stretches ago.
-FITTED, REFIT, FRESH = 12, 8, 12
-# The longest trial, and how much of it is looked at for swings, in stretches.
-TRIAL_MOST, SWINGS_MOST = 60, 20
-# A set on trial goes back at half of the limit, since it takes a stretch to see it. By chance alone, half a minute
-# differs by some 0.05 from what was expected.
-HALF_MINUTE, LIMIT, ALERT = 30, 0.20, 0.10  # stretches, shares
-# A model's ratio of two sets is wrong by this much (a logarithm), and by as much as its last promise was; every further
-# search fits the model anew, so this share of that remains. A proposal must be better by CERTAIN times its deviation.
-MODEL_DEVIATION, REMEMBERED, CERTAIN = 0.04, 0.5, 2.0
-# A set is kept that is better by this share for certain.
-LEAST_GAIN = 0.03
-# A model that misses some joint's error by more than this factor (a logarithm) does not know the arm yet.
-BELIEVED = 0.7
-
 
 class Outcome(StrEnum):
     KEPT = "kept"
     WORSE = "worse"
     RESTLESS = "restless"
-    UNTOLD = "untold"
+    INCONCLUSIVE = "untold"
 
 
 @dataclass(frozen=True)
@@ -103,18 +82,27 @@ class _Trial:
     expected: list[float] = field(default_factory=list)  # what they would have been with the set from before
     begun: bool = False
 
-    @property
-    def ratio(self) -> Ratio:
-        return Ratio.of(np.array(self.seen), np.array(self.expected))
+    def ratio(self, group_s: int) -> Ratio:
+        """The errors seen over those expected; so many neighbouring stretches count as one observation."""
+        return Ratio.of(np.array(self.seen), np.array(self.expected), group_s)
 
 
 class Adaptation:
     """See the head of this file. `table` is what the board runs at the start."""
 
-    def __init__(self, model: Model, table: ParameterTable, *, budget: int, seed: int = 0) -> None:
+    def __init__(
+        self,
+        model: Model,
+        table: ParameterTable,
+        *,
+        budget: int,
+        seed: int = 0,
+        limits: AdaptationLimits = ADAPTATION_LIMITS,
+    ) -> None:
         self.model = model
+        self._limits, self._decisions, self._lead_s = limits, limits.decisions, limits.gain.lead_s
         self.start = self.running = self.kept = table
-        self.live = LiveModel.of(model.arm)
+        self.live = LiveModel.of(model.arm, limits)
         self.trials: list[TriedSet] = []
         self.searches = 0
         self.doubt = ""  # why the model proposes nothing now
@@ -122,9 +110,10 @@ class Adaptation:
         self.wish: Wish | None = None
         self._budget, self._seed = budget, seed
         self._own: list[Stretch] = []  # with the kept set
-        self._newest: deque[Stretch] = deque(maxlen=FITTED)  # with any
+        self._newest: deque[Stretch] = deque(maxlen=limits.decisions.fit_s)  # with any
         self._age = self._age_asked = 0  # stretches since those that the model knows; and since those of the task
-        self._last_half: deque[tuple[float, float]] = deque(maxlen=HALF_MINUTE)  # error, and what it would have been
+        # Each stretch's error, and what it would have been.
+        self._last_half: deque[tuple[float, float]] = deque(maxlen=limits.decisions.window_s)
         self._scale: Scale | None = None
         self._missed = 0.0  # by how much the last promise was wrong (a logarithm)
         self._trial: _Trial | None = None
@@ -164,7 +153,7 @@ class Adaptation:
             self._trial.stretches.append(stretch)
             self._look_at_trial(self._trial)
         else:
-            self._own = [*self._own, stretch][-KEPT:]
+            self._own = [*self._own, stretch][-self._decisions.keep_s :]
             self._look_at_kept()
 
     def changed(self) -> None:
@@ -191,18 +180,18 @@ class Adaptation:
 
     def _weigh(self, proposal: Proposal) -> None:
         """Wish for what was found, if that promises enough."""
-        if proposal.scale.error <= BELIEVED:
+        if proposal.scale.error <= self._decisions.max_log_misfit:
             self.live, self._scale, self._age = proposal.live, proposal.scale, self._age_asked
         if self.wish is not None or self._asked is not self.kept:
             return
-        self._missed *= REMEMBERED
+        self._missed *= self._decisions.error_memory
         self.doubt = self._doubt(proposal)
         if not self._trusts(proposal.live):
             self.doubt = self._suspicion
         if self.doubt or np.array_equal(proposal.rows, controllers_of(self.kept)):
             return
         table = self.kept.with_controllers(proposal.rows)
-        self._trial = _Trial(proposal, table, Swings.of(self._own, self.kept.supply_v))
+        self._trial = _Trial(proposal, table, self._swings_of(self._own))
         self.wish = Wish(table, f"{_lower(proposal.predicted)} error is predicted")
 
     def _trusts(self, live: LiveModel) -> bool:
@@ -213,9 +202,9 @@ class Adaptation:
         if before and self._suspicion:
             self.doubt = self._suspicion
             if self._trial is not None:
-                self._end(self._trial, Outcome.UNTOLD, self._suspicion)
+                self._end(self._trial, Outcome.INCONCLUSIVE, self._suspicion)
             if self.kept.crc != self.start.crc:
-                self._give_up_kept(Outcome.UNTOLD, self._suspicion)
+                self._give_up_kept(Outcome.INCONCLUSIVE, self._suspicion)
         return not self._suspicion
 
     def hunted(self, joint: int) -> None:
@@ -233,12 +222,14 @@ class Adaptation:
         """What the background should do now, once; None for nothing."""
         if self._thinking or self.wish is not None:
             return None
-        enough = len(judged_of(self._own)) >= ENOUGH and self._since >= APART and _works(self._own)
-        if enough and self._trial is None:
+        limits = self._decisions
+        seen = len(judged_of(self._own, self._lead_s)) >= limits.first_search_s
+        if seen and self._since >= limits.between_searches_s and self._works() and self._trial is None:
             self._since, self._asked = 0, self.kept
             self.searches += 1
             return self._ask(self.kept, self._own, self._budget)
-        if self.running.crc != self.start.crc and self._age_asked >= REFIT and len(self._newest) == FITTED:
+        due = self._age_asked >= limits.refit_every_s and len(self._newest) == limits.fit_s
+        if self.running.crc != self.start.crc and due:
             return self._ask(self.running, self._newest, 0)
         return None
 
@@ -253,57 +244,61 @@ class Adaptation:
         """Whether a fit shows the errors that were measured. One to stretches before and after a load was taken up fits
         two arms, and what it says of any set may be wrong by orders of magnitude.
         """
-        chain = (self._own if self._trial is None else self._trial.stretches)[-FITTED:]
-        measured = np.array([one.error for one in judged_of(chain)])
+        chain = (self._own if self._trial is None else self._trial.stretches)[-self._decisions.fit_s :]
+        measured = np.array([one.error for one in judged_of(chain, self._lead_s)])
         predicted = foresee(model, self.running, controllers_of(self.running), chain, model.plants[:1])[0]
-        return not len(measured) or Scale.of(measured, predicted).error <= BELIEVED
+        if not len(measured):
+            return True
+        return Scale.of(measured, predicted, self._limits.gain).error <= self._decisions.max_log_misfit
 
     def _doubt(self, proposal: Proposal) -> str:
-        if proposal.scale.error > BELIEVED:
+        limits = self._decisions
+        if proposal.scale.error > limits.max_log_misfit:
             return f"the model misses a joint's error by a factor of {np.exp(proposal.scale.error):.2g}"
-        deviation = np.sqrt(proposal.spread**2 + proposal.scale.deviation**2 + MODEL_DEVIATION**2 + self._missed**2)
-        if np.log(proposal.predicted) + CERTAIN * deviation > 0.0:
-            return f"nothing is predicted better by more than the uncertainty of {100 * CERTAIN * deviation:.0f} %"
+        own = limits.model_sigma**2
+        deviation = np.sqrt(proposal.spread**2 + proposal.scale.deviation**2 + own + self._missed**2)
+        uncertainty = limits.sigmas * deviation
+        if np.log(proposal.predicted) + uncertainty > 0.0:
+            return f"nothing is predicted better by more than the uncertainty of {100 * uncertainty:.0f} %"
         return ""
 
     def _look_at_kept(self) -> None:
-        if self._scale is None or not all(one.joined for one in self._own[-LEAD:]) or len(self._own) <= LEAD:
+        if self._scale is None or not self._is_led_up_to(self._own):
             return
         self._note_half_minute(self._scale, self._own)
         if self.kept.crc == self.start.crc or self.wish is not None:
             return
-        if self._excess(self._scale) > (LIMIT if self._age <= FRESH else 2 * LIMIT):
+        most = self._decisions.max_excess
+        if self._excess(self._scale) > (most if self._is_fresh else 2 * most):
             self._give_up_kept(Outcome.WORSE, "it follows worse than the set from the start would")
 
     def _look_at_trial(self, trial: _Trial) -> None:
-        if (
-            self.wish is not None
-            or len(trial.stretches) <= LEAD
-            or not all(one.joined for one in trial.stretches[-LEAD:])
-        ):
+        if self.wish is not None or not self._is_led_up_to(trial.stretches):
             return
-        scale = trial.proposal.scale
+        scale, limits = trial.proposal.scale, self._decisions
         seen, by_start = self._note_half_minute(scale, trial.stretches)
         trial.seen.append(seen)
         same = self.kept.crc == self.start.crc
         trial.expected.append(by_start if same else self._expected(scale, self.kept, trial.stretches))
-        excess, fresh = self._excess(scale), self._age <= FRESH
-        if excess > ALERT:
+        excess = self._excess(scale)
+        if excess > limits.alert_excess:
             return self._end(trial, Outcome.WORSE, f"{100 * excess:.0f} % more error in half a minute", urgent=True)
-        swings = Swings.of(trial.stretches[-SWINGS_MOST:], self.kept.supply_v)
+        swings = self._swings_of(trial.stretches[-limits.trial_swings_s :])
         if swings is not None and trial.swings_before is not None:
-            clause = find_excess(swings, trial.swings_before, self.kept.supply_v)
+            clause = find_excess(swings, trial.swings_before, self.kept.supply_v, self._limits.swings)
             if clause:
                 return self._end(trial, Outcome.RESTLESS, clause)
         # Each look is another chance to be wrong: one for every new group.
-        told = fresh and len(trial.seen) % GROUP == 0
-        low, high = trial.ratio.within(scale.deviation) if told else (0.0, np.inf)
-        if high < 1.0 - LEAST_GAIN and not self._suspicion:
-            return self._end(trial, Outcome.KEPT, f"{_lower(trial.ratio.value)} error")
+        told = self._is_fresh and len(trial.seen) % self._limits.gain.group_s == 0
+        ratio = trial.ratio(self._limits.gain.group_s)
+        low, high = ratio.within(scale.deviation) if told else (0.0, np.inf)
+        if high < 1.0 - limits.min_gain and not self._suspicion:
+            return self._end(trial, Outcome.KEPT, f"{_lower(ratio.value)} error")
         if low > 1.0:
             return self._end(trial, Outcome.WORSE, "more error")
-        if len(trial.stretches) >= TRIAL_MOST:
-            return self._end(trial, Outcome.UNTOLD, f"no gain could be told from chance in {TRIAL_MOST} s")
+        if len(trial.stretches) >= limits.max_trial_s:
+            why = f"no gain could be told from chance in {limits.max_trial_s} s"
+            return self._end(trial, Outcome.INCONCLUSIVE, why)
         return None
 
     def _note_half_minute(self, scale: Scale, chain: Sequence[Stretch]) -> tuple[float, float]:
@@ -316,7 +311,7 @@ class Adaptation:
     def _reckon_again(self) -> None:
         """The arm may have changed: what would have been in the last stretches, by the model fitted to them."""
         trial = self._trial
-        chain = (self._own if trial is None else trial.stretches)[-FITTED - LEAD :]
+        chain = (self._own if trial is None else trial.stretches)[-self._decisions.fit_s - self._lead_s :]
         scale = self._scale if trial is None else trial.proposal.scale
         if scale is None or not all(one.joined for one in chain[1:]):
             return
@@ -335,15 +330,15 @@ class Adaptation:
         if not self._last_half:
             return 0.0
         seen, expected = np.array(self._last_half).sum(axis=0)
-        return float((seen - expected) / max(expected, HALF_MINUTE * scale.usual))
+        return float((seen - expected) / max(expected, self._decisions.window_s * scale.usual))
 
     def _expected(self, scale: Scale, table: ParameterTable, chain: Sequence[Stretch]) -> float:
         """The last stretch's error, had another set run; in the scale's unit."""
         rows, plant = controllers_of(table), self.live.plants[:1]
-        return float(scale.expected(foresee(self.live, table, rows, chain[-LOOKED:], plant)[0])[-1])
+        return float(scale.expected(foresee(self.live, table, rows, chain[-self._decisions.context_s :], plant)[0])[-1])
 
     def _end(self, trial: _Trial, outcome: Outcome, why: str, urgent: bool = False) -> None:
-        ratio = trial.ratio if trial.seen else None
+        ratio = trial.ratio(self._limits.gain.group_s) if trial.seen else None
         low, high = (None, None) if ratio is None else ratio.within(trial.proposal.scale.deviation)
         self.trials.append(
             TriedSet(
@@ -373,13 +368,25 @@ class Adaptation:
         last = max(place for place, one in enumerate(self.trials) if one.outcome is Outcome.KEPT)
         self.trials[last] = replace(self.trials[last], outcome=outcome, why=f"{why}, after it had been kept")
         self.kept = self.start
-        self._missed = BELIEVED
+        self._missed = self._decisions.max_log_misfit
         self.wish = Wish(self.start, why, urgent=True)
 
+    def _works(self) -> bool:
+        """Whether a person is at work."""
+        leader = np.concatenate([one.leader for one in self._own])
+        return bool(np.ptp(leader, axis=0).max() > self._decisions.work_rad)
 
-def _works(stretches: Sequence[Stretch]) -> bool:
-    leader = np.concatenate([one.leader for one in stretches])
-    return bool(np.ptp(leader, axis=0).max() > WORK_RAD)
+    def _is_led_up_to(self, chain: Sequence[Stretch]) -> bool:
+        """Whether enough joined stretches lie before the last one for a prediction."""
+        return len(chain) > self._lead_s and all(one.joined for one in chain[-self._lead_s :])
+
+    @property
+    def _is_fresh(self) -> bool:
+        """Whether the model knows the arm as it was just now."""
+        return self._age <= self._decisions.fit_valid_s
+
+    def _swings_of(self, stretches: Sequence[Stretch]) -> Swings | None:
+        return Swings.of(stretches, self.kept.supply_v, self._limits.samples)
 
 
 def _lower(ratio: float) -> str:

@@ -13,15 +13,13 @@ from typing import Self
 
 import numpy as np
 
+from greywhale.adapt.limits import ADAPTATION_LIMITS, GainLimits
 from greywhale.base.types import Floats
 
-# Neighbouring stretches are alike, so this many count as one observation.
-GROUP = 4
+# Student's t for one-sided 99 %, from this many groups on, one less being the degrees of freedom; the last is that of a
+# normal distribution.
 LEAST_GROUPS = 3
-# Student's t for one-sided 99 %, by degrees of freedom from 2 on; the last is that of a normal distribution.
 T_99 = (6.965, 4.541, 3.747, 3.365, 3.143, 2.998, 2.896, 2.821, 2.764, 2.718, 2.681, 2.650, 2.624, 2.602, 2.326)
-# Below this (rad²: 1 mrad rms) errors of a joint are its potentiometer's.
-LEAST_RAD2 = 1e-6
 
 
 @dataclass(frozen=True)
@@ -36,12 +34,13 @@ class Scale:
     deviation: float
 
     @classmethod
-    def of(cls, measured: Floats, predicted: Floats) -> Self:
+    def of(cls, measured: Floats, predicted: Floats, limits: GainLimits = ADAPTATION_LIMITS.gain) -> Self:
         """From the errors (n, 4) of n stretches."""
-        factor = (measured.sum(axis=0) + LEAST_RAD2) / (predicted.sum(axis=0) + LEAST_RAD2)
-        weight = 1.0 / (measured.mean(axis=0) + LEAST_RAD2)
+        least = limits.pot_noise_rad2
+        factor = (measured.sum(axis=0) + least) / (predicted.sum(axis=0) + least)
+        weight = 1.0 / (measured.mean(axis=0) + least)
         seen = measured @ weight
-        ratio = Ratio.of(seen, (factor * predicted) @ weight)
+        ratio = Ratio.of(seen, (factor * predicted) @ weight, limits.group_s)
         return cls(factor, weight, float(seen.mean()), ratio.deviation)
 
     @property
@@ -69,12 +68,12 @@ class Ratio:
     groups: int
 
     @classmethod
-    def of(cls, above: Floats, below: Floats) -> Self:
-        """From values (n,) each, in the order of time."""
-        groups = len(above) // GROUP
+    def of(cls, above: Floats, below: Floats, group_s: int = ADAPTATION_LIMITS.gain.group_s) -> Self:
+        """From values (n,) each, in the order of time; so many neighbours count as one observation."""
+        groups = len(above) // group_s
         if groups < LEAST_GROUPS:
             return cls(float(above.sum() / max(below.sum(), 1e-12)), float("inf"), groups)
-        tops, bottoms = (one[: groups * GROUP].reshape(groups, GROUP).sum(axis=1) for one in (above, below))
+        tops, bottoms = (one[: groups * group_s].reshape(groups, group_s).sum(axis=1) for one in (above, below))
         value = float(tops.sum() / bottoms.sum())
         left = tops - value * bottoms
         deviation = np.sqrt(groups / (groups - 1.0) * np.sum(left**2)) / bottoms.sum() / value

@@ -15,6 +15,7 @@ from typing import Self
 import numpy as np
 
 from greywhale.adapt.contradiction import find_contradiction
+from greywhale.adapt.limits import ADAPTATION_LIMITS, AdaptationLimits
 from greywhale.adapt.stretch import Stretch, chains_of, traces_of
 from greywhale.arm import ArmParameters
 from greywhale.base.types import Floats
@@ -31,13 +32,6 @@ from greywhale.protocol.table import ParameterTable
 
 DRIFTS = (*MOTOR, "coulomb", "tip")
 LOAD = Parameter(WHOLE_ARM, "tip")
-STEPS = 8
-# A fit that begins with the load is taken unless the other misses the windows by so much less.
-AS_GOOD = 1.5
-# Plants that are tuned for: the estimate, and others drawn from what the fit leaves open.
-PLANTS = 3
-# A joint shows its friction from this much motion on (rad).
-MOVED_RAD = 0.1
 
 
 @dataclass(frozen=True)
@@ -48,13 +42,14 @@ class LiveModel:
     space: Space = field(repr=False)
     x: Floats
     plants: Floats = field(repr=False)
+    limits: AdaptationLimits = field(default=ADAPTATION_LIMITS, repr=False)
 
     @classmethod
-    def of(cls, arm: ArmParameters) -> Self:
+    def of(cls, arm: ArmParameters, limits: AdaptationLimits = ADAPTATION_LIMITS) -> Self:
         """As an identification left it."""
         space = Space.of(arm, DRIFTS, arm.joints_in_use)
         x = space.start()
-        return cls(arm, space, x, space.plants(x[None]))
+        return cls(arm, space, x, space.plants(x[None]), limits)
 
     def changes(self) -> dict[str, float]:
         """What every number has become, as a multiple of what the model's file says; of a load, kg more."""
@@ -68,37 +63,35 @@ class LiveModel:
     @property
     def contradiction(self) -> str:
         """Why the readings cannot be true, in a clause; "" where they can."""
-        return find_contradiction(self.changes(), self.arm.joints_in_use)
+        return find_contradiction(self.changes(), self.arm.joints_in_use, self.limits.model.max_pot_error)
 
     def refit(self, stretches: Sequence[Stretch], table: ParameterTable, seed: int) -> LiveModel:
         """The same arm after these stretches; joints that they do not move stay as they were."""
-        log = log_of(stretches, table)
+        log, limits = log_of(stretches, table), self.limits.model
         prepared = prepare(log, table["filter_shift"])
-        joints = [
-            joint for joint in self.arm.joints_in_use if np.ptp(log.follower[:, joint]) > MOVED_RAD and prepared.runs
-        ]
+        moved = np.ptp(log.follower, axis=0) > limits.moved_rad
+        joints = [joint for joint in self.arm.joints_in_use if moved[joint] and prepared.runs]
         if not joints:
             return self
         windows = WindowResidual([prepared], self.arm, joints)
         zero = np.zeros(JOINTS)
-        tried = [WindowFit(windows, self.space, start).run(STEPS) for start in (self._with_load(windows), self.x)]
+        starts = (self._with_load(windows), self.x)
+        tried = [WindowFit(windows, self.space, start).run(limits.fit_steps) for start in starts]
         loaded, other = (float(windows.misfit(self.space.plants(x[None])[0], zero).mean()) for x in tried)
-        found = tried[0] if loaded < AS_GOOD * other else tried[1]
+        found = tried[0] if loaded < limits.load_preference * other else tried[1]
         # Where the windows begin in gaps and play is seen best with a model that is nearly right.
         windows.settle(self.space.plants(found[None])[0], zero)
-        found = WindowFit(windows, self.space, found).run(STEPS)
+        found = WindowFit(windows, self.space, found).run(limits.fit_steps)
         sure = uncertainty(windows, self.space, found, joints)
-        plants = np.vstack(
-            [self.space.plants(found[None]), draw_plants(self.space, found, sure.covariance, PLANTS - 1, seed)]
-        )
-        return replace(self, x=found, plants=plants)
+        others = draw_plants(self.space, found, sure.covariance, limits.plants - 1, seed)
+        return replace(self, x=found, plants=np.vstack([self.space.plants(found[None]), others]))
 
     def _with_load(self, windows: WindowResidual) -> Floats:
         """The same numbers with the load that explains the windows best."""
         place, x = self.space.names.index(LOAD.name), self.x.copy()
         x[place] = self.arm.tip.mass
         loads = Space(self.arm, (LOAD,), self.space.plants(x[None])[0])
-        x[place] = WindowFit(windows, loads, self.x[[place]]).run(STEPS)[0]
+        x[place] = WindowFit(windows, loads, self.x[[place]]).run(self.limits.model.fit_steps)[0]
         return x
 
 

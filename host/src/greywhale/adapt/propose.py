@@ -11,8 +11,9 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from greywhale.adapt.foresee import LEAD, foresee, judged_of
+from greywhale.adapt.foresee import foresee, judged_of
 from greywhale.adapt.gain import Scale
+from greywhale.adapt.limits import ADAPTATION_LIMITS, AdaptationLimits, ProposalLimits
 from greywhale.adapt.live_model import LiveModel
 from greywhale.adapt.stretch import ROWS, Stretch, chains_of, traces_of
 from greywhale.base.types import Controllers, Floats
@@ -22,16 +23,6 @@ from greywhale.protocol.firmware import JOINTS, TICK_S
 from greywhale.protocol.table import ParameterTable
 from greywhale.tune import tune
 from greywhale.tune.model import Model
-
-# The newest stretches: the model is fitted to them, and the motion of those without a gap is trained on, with a row
-# every so many ticks.
-NEWEST, EVERY = 24, 5
-# The person may move faster than in these seconds, and a set that never needed more could have too little voltage then:
-# the search trains on the way back as well, at so many times the speed.
-FASTER = 1.5
-# Older stretches count for the comparison, so many at a time, while the model explains each joint's error in them as
-# well as in the newest, up to this factor (a logarithm): then it is the same arm.
-BLOCK, SAME_ARM = 8, 0.4
 
 
 @dataclass(frozen=True)
@@ -47,6 +38,10 @@ class Task:
     recent: tuple[Stretch, ...] = field(repr=False)
     budget: int
     seed: int
+
+    @property
+    def limits(self) -> AdaptationLimits:
+        return self.live.limits
 
 
 @dataclass(frozen=True)
@@ -69,10 +64,10 @@ def propose(task: Task) -> Proposal:
     live = _fit(task)
     running = controllers_of(task.table)
     before = foresee(live, task.table, running, task.recent, live.plants)
-    measured = np.array([one.error for one in judged_of(task.recent)])
-    count = _count_alike(measured, before[0])
+    measured = np.array([one.error for one in judged_of(task.recent, task.limits.gain.lead_s)])
+    count = _count_alike(measured, before[0], task.limits)
     before = before[:, -count:]
-    scale = Scale.of(measured[-count:], before[0])
+    scale = Scale.of(measured[-count:], before[0], task.limits.gain)
     found = tune(
         replace(task.model, table=task.table, plants=live.plants, doubts=(), travel=None),
         budget=task.budget,
@@ -80,7 +75,7 @@ def propose(task: Task) -> Proposal:
         threads=1,
         start=running,
         floors=False,
-        motion=motion_of(task.recent),
+        motion=motion_of(task.recent, task.limits.proposals),
     ).after
     best = (1.0, 0.0, running)
     for rows in (found, task.start):
@@ -97,30 +92,31 @@ def work_on(task: Task) -> Proposal | LiveModel:
 
 
 def _fit(task: Task) -> LiveModel:
-    return task.live.refit(task.recent[-NEWEST:], task.table, task.seed)
+    return task.live.refit(task.recent[-task.limits.proposals.newest_s :], task.table, task.seed)
 
 
-def _count_alike(measured: Floats, predicted: Floats) -> int:
+def _count_alike(measured: Floats, predicted: Floats, limits: AdaptationLimits) -> int:
     """How many of the last stretches show the arm as it is now, from their errors (n, 4)."""
-    newest = NEWEST - LEAD
-    scale = Scale.of(measured[-newest:], predicted[-newest:])
+    newest, step = limits.proposals.newest_s - limits.gain.lead_s, limits.proposals.block_s
+    scale = Scale.of(measured[-newest:], predicted[-newest:], limits.gain)
     count = min(newest, len(measured))
-    while count + BLOCK <= len(measured):
-        block = slice(len(measured) - count - BLOCK, len(measured) - count)
-        if Scale.of(measured[block], scale.factor * predicted[block]).error > SAME_ARM:
+    while count + step <= len(measured):
+        block = slice(len(measured) - count - step, len(measured) - count)
+        older = Scale.of(measured[block], scale.factor * predicted[block], limits.gain)
+        if older.error > limits.proposals.same_arm_log:
             break
-        count += BLOCK
+        count += step
     return count
 
 
-def motion_of(stretches: Sequence[Stretch]) -> Trajectory:
-    """What the person did in the longest part without a gap, from rest, and the same backwards and FASTER; readings'
+def motion_of(stretches: Sequence[Stretch], limits: ProposalLimits = ADAPTATION_LIMITS.proposals) -> Trajectory:
+    """What the person did in the longest part without a gap, from rest, and the same backwards and faster; readings'
     noise is averaged.
     """
-    chain = max(chains_of(stretches), key=len)[-NEWEST:]
-    leader = traces_of(chain).leader
-    angles: Floats = leader.reshape(len(chain) * ROWS // EVERY, EVERY, JOINTS).mean(axis=1)
+    chain = max(chains_of(stretches), key=len)[-limits.newest_s :]
+    leader, every = traces_of(chain).leader, limits.row_every_ticks
+    angles: Floats = leader.reshape(len(chain) * ROWS // every, every, JOINTS).mean(axis=1)
     rows = np.arange(len(angles), dtype=np.float64)
-    back = np.arange(rows[-1] - FASTER, 0.0, -FASTER)
+    back = np.arange(rows[-1] - limits.faster, 0.0, -limits.faster)
     angles = np.vstack([angles, np.transpose([np.interp(back, rows, joint) for joint in angles.T])])
-    return Trajectory(EVERY * TICK_S * np.arange(len(angles), dtype=np.float64), angles)
+    return Trajectory(every * TICK_S * np.arange(len(angles), dtype=np.float64), angles)

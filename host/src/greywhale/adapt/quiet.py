@@ -1,4 +1,5 @@
-"""Whether a set on trial swings more than the one from before. The limits are those of a commissioning.
+"""Whether a set on trial swings more than the one from before. The limits are those of a commissioning
+(`measure/limits.py`).
 
 A hand trembles, and a good follower follows that: only what it does beyond its leader counts as unrest.
 """
@@ -13,18 +14,11 @@ import numpy as np
 import scipy.ndimage  # both are loaded before an arm is led, since to load one takes
 import scipy.signal  # noqa: F401 # longer than the arm's lease on a small computer
 
+from greywhale.adapt.limits import ADAPTATION_LIMITS, SampleLimits
 from greywhale.adapt.stretch import Stretch, chains_of, traces_of
 from greywhale.base.types import Floats
-from greywhale.commission.judge import BEARABLE, Limits
-from greywhale.commission.measures import NAMES, Measures
-from greywhale.commission.motions import PARTS
+from greywhale.measure.limits import SWING_LIMITS, AllowedSwings, SwingLimits
 from greywhale.measure.swings import QUIET_SHARE, chatter_of_record, rattle_of_record, ripple_of_record, unrest
-from greywhale.protocol.firmware import JOINTS
-
-# A hand trembles; its leader rests within this (rad).
-STILL_RAD = 0.02
-# Shorter records (in stretches) say little about swings.
-SHORTEST = 4
 
 
 @dataclass(frozen=True)
@@ -37,33 +31,36 @@ class Swings:
     ripple: Floats
 
     @classmethod
-    def of(cls, stretches: Sequence[Stretch], supply_v: float) -> Self | None:
+    def of(
+        cls, stretches: Sequence[Stretch], supply_v: float, limits: SampleLimits = ADAPTATION_LIMITS.samples
+    ) -> Self | None:
         """Measured over the longest part without a gap; None where that is too short."""
         chain = max(chains_of(stretches), key=len, default=[])
-        if len(chain) < SHORTEST:
+        if len(chain) < limits.least_swing_record_s:
             return None
-        traces = traces_of(chain)
+        traces, still = traces_of(chain), limits.hand_still_rad
         return cls(
-            unrest=_beyond(*(unrest(traces.leader, path, STILL_RAD) for path in (traces.follower, traces.leader))),
+            unrest=_beyond(*(unrest(traces.leader, path, still) for path in (traces.follower, traces.leader))),
             rattle=rattle_of_record(traces.leader, traces.follower),
             chatter=chatter_of_record(traces.voltage, supply_v),
             ripple=ripple_of_record(traces.voltage),
         )
 
 
-def find_excess(now: Swings, before: Swings, supply_v: float) -> str:
+def find_excess(now: Swings, before: Swings, supply_v: float, limits: SwingLimits = SWING_LIMITS) -> str:
     """A clause on what is beyond its limit, "" for nothing."""
-    limits = Limits.of(_as_measures(before), np.zeros(JOINTS, dtype=bool), QUIET_SHARE * supply_v)
+    rows = (one[None] for one in (before.unrest, before.rattle, before.chatter, before.ripple))
+    most_of = AllowedSwings.beside(*rows, QUIET_SHARE * supply_v, limits)
     allowed = {
-        "unrest": (limits.unrest[0], 1e3, "mrad rms at rest"),
-        "rattle": (limits.rattle[0], 1e3, "mrad rms of rattling"),
-        "chatter": (limits.chatter[0], 1.0, "swings of the voltage a second"),
-        "ripple": (limits.ripple[0], 1.0, "V rms of ripple"),
+        "unrest": (most_of.unrest[0], 1e3, "mrad rms at rest"),
+        "rattle": (most_of.rattle[0], 1e3, "mrad rms of rattling"),
+        "chatter": (most_of.chatter[0], 1.0, "swings of the voltage a second"),
+        "ripple": (most_of.ripple[0], 1.0, "V rms of ripple"),
     }
     for name, (most, unit, what) in allowed.items():
         shares = np.nan_to_num(getattr(now, name) / most)
         joint = int(np.argmax(shares))
-        if shares[joint] > BEARABLE:
+        if shares[joint] > limits.bearable_excess:
             value = unit * getattr(now, name)[joint]
             return f"joint {joint} has {value:.3g} {what}, and {unit * most[joint]:.3g} are allowed"
     return ""
@@ -72,8 +69,3 @@ def find_excess(now: Swings, before: Swings, supply_v: float) -> str:
 def _beyond(follower: Floats, leader: Floats) -> Floats:
     found: Floats = np.sqrt(np.maximum(follower**2 - leader**2, 0.0))
     return found
-
-
-def _as_measures(swings: Swings) -> Measures:
-    """A check all of whose parts are alike, as the commissioning's limits take it."""
-    return Measures(**{name: np.tile(getattr(swings, name, np.zeros(JOINTS)), (len(PARTS), 1)) for name in NAMES})

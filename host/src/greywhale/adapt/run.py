@@ -13,8 +13,9 @@ from pathlib import Path
 import numpy as np
 
 from greywhale.adapt.background import Background, background
-from greywhale.adapt.change import CLOSE_RAD, LOOK_EVERY, SOFT_START_MS, STILL_RAD, RestWatch, SetChanger
+from greywhale.adapt.change import SOFT_START_MS, RestWatch, SetChanger
 from greywhale.adapt.decide import Adaptation
+from greywhale.adapt.limits import ADAPTATION_LIMITS, AdaptationLimits, ChangeLimits
 from greywhale.adapt.result import AdaptationResult, say
 from greywhale.adapt.stretch import Collector
 from greywhale.base.errors import UserError
@@ -25,22 +26,16 @@ from greywhale.board.hunting_stop import Hunting, HuntingStop
 from greywhale.board.record import BUSY_LEASE_MS
 from greywhale.board.stream import Received, stream, why_stopped
 from greywhale.board.upload import read_parameters, run_set, upload_set
-from greywhale.commission.start import refuse_uncalibrated
 from greywhale.files import controller as controller_file
 from greywhale.protocol import schema
 from greywhale.protocol.firmware import ANGLE_LSB
 from greywhale.protocol.table import ParameterTable
+from greywhale.tune.board_checks import refuse_uncalibrated
 from greywhale.tune.model import Model, load_model
 
 # Evaluations of one search in the background.
 BUDGET = 300
 SECONDS = 600.0
-# The longest that a change of the set may take.
-MOST_OFF_TICKS = 1000
-# The first soft start, of the stored set.
-MOST_START_TICKS = 12_000
-# How long after a change errors are looked at (ticks).
-BUMP_TICKS = 400
 
 
 @dataclass(frozen=True)
@@ -58,6 +53,7 @@ class AdaptationRequest:
     seconds: float = SECONDS
     budget: int = BUDGET
     seed: int = 0
+    judging: AdaptationLimits = ADAPTATION_LIMITS
 
 
 def adapt(
@@ -118,17 +114,20 @@ class _Session:
         self._device, self._request, self._start = device, request, start
         self._searches, self._report = searches, report
         quick = start.with_raw({"soft_start_ms": SOFT_START_MS})  # the same set, as it runs while sets change
-        self._core = Adaptation(replace(model, table=quick), quick, budget=request.budget, seed=request.seed)
-        self._collector, self._changer = Collector(), SetChanger(device)
-        self._rest, self._hunting = RestWatch(), HuntingStop()
+        self._limits = request.judging.changes
+        self._core = Adaptation(
+            replace(model, table=quick), quick, budget=request.budget, seed=request.seed, limits=request.judging
+        )
+        self._collector, self._changer = Collector(request.judging.samples), SetChanger(device, self._limits)
+        self._rest, self._hunting = RestWatch(self._limits), HuntingStop()
         self._worked_s = 0.0
-        self._bump = _Bump()
+        self._bump = _Bump(self._limits)
         self._kept = self._core.kept  # what the file `out` holds, if it is not the start
 
     def work(self) -> None:
         received = stream(self._device, 1)
         with self._device.enabled(BUSY_LEASE_MS):
-            pause = _Pause(MOST_START_TICKS)
+            pause = _Pause(self._limits.max_first_start_ticks)
             begun: int | None = None
             for one in received:
                 if one.sample.state is schema.State.FAULT or pause.is_too_long(one):
@@ -140,7 +139,7 @@ class _Session:
                 if self._worked_s >= self._request.seconds:
                     break
                 if self._take(one):
-                    pause = _Pause(one.elapsed + MOST_OFF_TICKS)
+                    pause = _Pause(one.elapsed + self._limits.max_off_ticks)
         self._device.telemetry(0)
 
     def _take(self, one: Received) -> bool:
@@ -165,14 +164,14 @@ class _Session:
         wish = core.wish
         if wish is None or not self._changer.is_ready(wish.table):
             return False
-        if not (self._rest.resting or (wish.urgent and self._rest.error < CLOSE_RAD)):
+        if not (self._rest.resting or (wish.urgent and self._rest.is_close)):
             return False
         self._bump.begin(one)
         self.changes += 1
         self._changer.change()
         core.changed()
         self._collector.cut()
-        self._rest, self._hunting = RestWatch(), HuntingStop()
+        self._rest, self._hunting = RestWatch(self._limits), HuntingStop()
         return True
 
     def _think(self) -> None:
@@ -242,7 +241,8 @@ class _Pause:
 class _Bump:
     """By how much a joint's error grows in a change of the set, at most, while its leader rests."""
 
-    def __init__(self) -> None:
+    def __init__(self, limits: ChangeLimits) -> None:
+        self._limits = limits
         self.most_rad = 0.0
         self._begun: Received | None = None
 
@@ -251,12 +251,12 @@ class _Bump:
 
     def take(self, one: Received) -> None:
         begun = self._begun
-        if begun is None or one.elapsed % LOOK_EVERY:
+        if begun is None or one.elapsed % self._limits.look_every_samples:
             return
-        if one.elapsed > begun.elapsed + BUMP_TICKS:
+        if one.elapsed > begun.elapsed + self._limits.bump_ticks:
             self._begun = None
             return
         joints = zip(begun.sample.leader, begun.sample.follower, one.sample.leader, one.sample.follower, strict=True)
         for led, followed, leads, follows in joints:
-            if abs(leads - led) < STILL_RAD / ANGLE_LSB:
+            if abs(leads - led) < self._limits.still_rad / ANGLE_LSB:
                 self.most_rad = max(self.most_rad, ANGLE_LSB * (abs(leads - follows) - abs(led - followed)))

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from greywhale.adapt.limits import ADAPTATION_LIMITS, SampleLimits
 from greywhale.base.types import Floats
 from greywhale.board.stream import Received
 from greywhale.loop.traces import Traces
@@ -15,8 +16,6 @@ from greywhale.protocol.firmware import ANGLE_LSB, TICK_S
 
 LENGTH_S = 1.0
 ROWS = round(LENGTH_S / TICK_S)
-# More lost samples than these are not filled in.
-MOST_LOST = 20
 _VOLT = schema.Sample.LSB["voltage"]
 
 
@@ -61,7 +60,8 @@ def chains_of(stretches: Sequence[Stretch]) -> list[list[Stretch]]:
 class Collector:
     """Makes stretches of samples; a gap ends the one in the making."""
 
-    def __init__(self) -> None:
+    def __init__(self, limits: SampleLimits = ADAPTATION_LIMITS.samples) -> None:
+        self._most_lost = limits.max_lost_samples
         self._rows: list[tuple[int, ...]] = []
         self._joined = False
 
@@ -72,7 +72,7 @@ class Collector:
 
     def take(self, received: Received) -> Stretch | None:
         """The stretch that this sample completes, if it does."""
-        if received.lost > MOST_LOST:
+        if received.lost > self._most_lost:
             self.cut()
         sample = received.sample
         self._rows.append((received.elapsed, *sample.leader, *sample.follower, *sample.voltage))

@@ -37,6 +37,7 @@ from greywhale.identify.excite.limits import limits_of
 from greywhale.loop.controllers import controllers_of
 from greywhale.protocol.firmware import JOINTS
 from greywhale.protocol.table import ParameterTable, find_board
+from greywhale.tune.board_checks import refuse_uncalibrated
 from greywhale.tune.model_checks import doubt_other_arm
 
 EXCITING = "excite_leader.csv"
@@ -129,7 +130,7 @@ class _Commissioning:
         facts = book.get("start")
         if facts is None:
             rig = arm()
-            start.refuse_uncalibrated(self.nominal, rig.before)
+            refuse_uncalibrated(self.nominal, rig.before)
             limits = limits_of(self.nominal, rig.before, rig.pose(), options.ranges or {})
             room = JointRange(limits.pose, limits.low, limits.high)
             if options.model is None:

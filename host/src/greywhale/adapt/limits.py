@@ -1,0 +1,152 @@
+"""The limits of an adaptation: what it looks at, when it changes the running set, and what it believes and keeps.
+
+A stretch of work is a second, so lengths in stretches are in seconds.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from greywhale.base.limits import BY_THE_FIRMWARE, MEASURED_ON_ARMS, limit
+from greywhale.measure.limits import SWING_LIMITS, SwingLimits
+
+
+@dataclass(frozen=True)
+class ChangeLimits:
+    """When and how the board takes another set over while a person works."""
+
+    stage_every_samples: int = limit(
+        4, "samples", "one parameter is staged so often: its answer takes less time than the samples between"
+    )
+    look_every_samples: int = limit(10, "samples", "a rest is looked for so often, which costs little time")
+    rest_samples: int = limit(250, "samples", "leader and follower rest for so long before a set is changed")
+    still_rad: float = limit(0.02, "rad", "they stay within this meanwhile: a hand trembles")
+    close_rad: float = limit(
+        0.12,
+        "rad",
+        "no error is larger at a change, an urgent one too: the arm would be left behind in the middle of a move",
+    )
+    max_off_ticks: int = limit(1000, "ticks", "a change that takes longer went wrong")
+    max_first_start_ticks: int = limit(
+        12_000, "ticks", "the first soft start, that of the stored set, takes no longer", BY_THE_FIRMWARE
+    )
+    bump_ticks: int = limit(400, "ticks", "errors are looked at for so long after a change")
+
+
+@dataclass(frozen=True)
+class SampleLimits:
+    """What makes a stretch of samples, and a record of stretches."""
+
+    max_lost_samples: int = limit(20, "samples", "a longer gap is not filled in: it ends the stretch in the making")
+    hand_still_rad: float = limit(0.02, "rad", "the leader rests within this: a hand trembles")
+    least_swing_record_s: int = limit(4, "s", "shorter records say little about swings")
+
+
+@dataclass(frozen=True)
+class ModelLimits:
+    """The fit of the live model to the last stretches."""
+
+    fit_steps: int = limit(8, "steps of least squares", "a fit starts at the last one, so a few are enough")
+    load_preference: float = limit(
+        1.5, "times the misfit", "a fit that begins with the load is taken unless the other misses by so much less"
+    )
+    plants: int = limit(3, "plants", "a set is tuned for the estimate, and others that the fit leaves open")
+    moved_rad: float = limit(0.1, "rad", "a joint shows its friction from this much motion on")
+    max_pot_error: float = limit(
+        1.35,
+        "times",
+        "a reading is doubted that turns too little, or too far, by this: of arms that were hot, worn, stiff, loaded "
+        "or short of supply none looked like more than 1.15, one that lost 40 % of its gain like 1.5 to 1.8",
+        MEASURED_ON_ARMS,
+    )
+
+
+@dataclass(frozen=True)
+class GainLimits:
+    """How a gain is told from chance."""
+
+    lead_s: int = limit(
+        4,
+        "s",
+        "a chain begins at rest for the model, and in the middle of anything for the arm: its first stretches show "
+        "neither",
+    )
+    group_s: int = limit(4, "s", "neighbouring stretches are alike, so this many count as one observation")
+    pot_noise_rad2: float = limit(1e-6, "rad²", "smaller errors of a joint (1 mrad rms) are its potentiometer's")
+
+
+@dataclass(frozen=True)
+class ProposalLimits:
+    """What a search in the background trains on, and compares its find by."""
+
+    newest_s: int = limit(
+        24, "s", "the model is fitted to these, and their motion is trained on: a load may have been taken up before"
+    )
+    row_every_ticks: int = limit(5, "ticks", "the motion has a row so often; the readings' noise is averaged between")
+    faster: float = limit(
+        1.5,
+        "times the speed",
+        "the search trains on the way back as well, quicker: a set that never needed more could have too little "
+        "voltage for a person who hurries",
+    )
+    block_s: int = limit(8, "s", "older stretches join the comparison so many at a time")
+    same_arm_log: float = limit(
+        0.4,
+        "as a logarithm",
+        "they do while the model explains each joint's error in them as well as in the newest, up to this factor",
+    )
+
+
+@dataclass(frozen=True)
+class DecisionLimits:
+    """When a set is searched, tried, kept and given up."""
+
+    keep_s: int = limit(60, "s", "so much of the work is kept")
+    first_search_s: int = limit(20, "s", "so much must have been seen with the running set before a search")
+    between_searches_s: int = limit(10, "s", "so much new work lies between two searches")
+    work_rad: float = limit(0.2, "rad", "a search needs a person at work: some joint's leader went this far")
+    context_s: int = limit(
+        8,
+        "s",
+        "a set is judged by its last stretch with so many before it: what the model's integral holds takes time to "
+        "build up",
+    )
+    fit_s: int = limit(12, "s", "while another set than that from the start runs, the model is fitted to so much")
+    refit_every_s: int = limit(8, "s", "and so often")
+    fit_valid_s: int = limit(12, "s", "a verdict needs a model that knows the arm until so long ago")
+    max_trial_s: int = limit(60, "s", "a trial that says nothing by then ends")
+    trial_swings_s: int = limit(20, "s", "so much of a trial is looked at for swings")
+    window_s: int = limit(30, "s", "an excess counts over this time, half a minute")
+    max_excess: float = limit(0.20, "of the error", "over that time the error may exceed the start's by so much")
+    alert_excess: float = limit(
+        0.10,
+        "of the error",
+        "a set on trial goes back at half of that, since it takes a stretch to see it; by chance alone half a minute "
+        "differs by some 0.05",
+        MEASURED_ON_ARMS,
+    )
+    model_sigma: float = limit(0.04, "as a logarithm", "a model's ratio of two sets is wrong by this much")
+    error_memory: float = limit(
+        0.5, "of the error", "and by this share of what the last promise was: each search fits the model anew"
+    )
+    sigmas: float = limit(2.0, "standard deviations", "a proposal must be better by so many")
+    min_gain: float = limit(0.03, "of the error", "a set is kept that is better by this for certain")
+    max_log_misfit: float = limit(
+        0.7, "as a logarithm", "a model that misses some joint's error by more than this factor does not know the arm"
+    )
+
+
+@dataclass(frozen=True)
+class AdaptationLimits:
+    """All limits of an adaptation; those of swings are the commissioning's too."""
+
+    changes: ChangeLimits = ChangeLimits()
+    samples: SampleLimits = SampleLimits()
+    model: ModelLimits = ModelLimits()
+    gain: GainLimits = GainLimits()
+    proposals: ProposalLimits = ProposalLimits()
+    decisions: DecisionLimits = DecisionLimits()
+    swings: SwingLimits = SWING_LIMITS
+
+
+ADAPTATION_LIMITS = AdaptationLimits()

@@ -1,0 +1,83 @@
+"""Limits with a reason: numbers that judge, each with its unit, why it has this size, and where that is from.
+
+A room keeps its limits in one frozen dataclass, in groups where there are many, and is handed other values as an
+argument. So an ablation is a loop over `dataclasses.replace`:
+
+>>> @dataclass(frozen=True)
+... class ReachLimits:
+...     reach_rad: float = limit(1.0, "rad", "a hand goes this far without a pause", BY_JUDGEMENT)
+>>> [(one.name, one.value, one.unit) for one in limits_in(ReachLimits())]
+[('reach_rad', 1.0, 'rad')]
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field, fields, is_dataclass, replace
+from typing import Any, TypeVar
+
+# Where a value is from, if no measurement, paper or firmware gave it.
+BY_JUDGEMENT = "by judgement"
+BY_DEFINITION = "by definition"
+BY_THE_FIRMWARE = "the firmware"
+MEASURED_ON_ARMS = "measured: simulated arms"
+MEASURED_IN_TRIALS = "measured: trials of a commissioning"
+MEASURED_IN_TIME = "measured: time and outcome of searches"
+THE_PAPER = "the paper"
+
+T = TypeVar("T")
+
+
+@dataclass(frozen=True)
+class Limit:
+    """One number as people read it; `name` goes through the groups, with dots between."""
+
+    name: str
+    value: Any
+    unit: str  # "" for a share or a factor
+    reason: str
+    origin: str
+
+
+def limit(value: T, unit: str, reason: str, origin: str = BY_JUDGEMENT) -> T:
+    """A field of a frozen dataclass of limits; its type is that of the value."""
+    return field(default=value, metadata={"unit": unit, "reason": reason, "origin": origin})
+
+
+def limits_in(limits: Any) -> Iterator[Limit]:
+    """Every limit of a dataclass and of its groups; a group that another module made has a table of its own there."""
+    for one in fields(limits):
+        value = getattr(limits, one.name)
+        if not is_dataclass(value):
+            yield Limit(one.name, value, **one.metadata)
+        elif type(value).__module__ == type(limits).__module__:
+            yield from (replace(inner, name=f"{one.name}.{inner.name}") for inner in limits_in(value))
+
+
+def changed(limits: Any, usual: Any) -> dict[str, Any]:
+    """The values in which limits differ from the usual ones, by their dotted names."""
+    found: dict[str, Any] = {}
+    for one in fields(limits):
+        here, there = getattr(limits, one.name), getattr(usual, one.name)
+        if is_dataclass(here):
+            found |= {f"{one.name}.{name}": value for name, value in changed(here, there).items()}
+        elif here != there:
+            found[one.name] = here
+    return found
+
+
+def markdown_table(limits: Any) -> str:
+    """The limits as a table for the documentation."""
+    rows = [f"| `{one.name}` | {_shown(one)} | {one.reason} | {one.origin} |" for one in limits_in(limits)]
+    return "\n".join(["| limit | value | reason | origin |", "|---|---|---|---|", *rows])
+
+
+def _shown(one: Limit) -> str:
+    values = one.value if isinstance(one.value, tuple) else (one.value,)
+    return f"{', '.join(_text(value) for value in values)} {one.unit}".strip()
+
+
+def _text(value: Any) -> str:
+    if isinstance(value, tuple):
+        return f"({', '.join(_text(inner) for inner in value)})"
+    return f"{value:g}" if isinstance(value, float) else f"{value}"

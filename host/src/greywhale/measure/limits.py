@@ -1,0 +1,103 @@
+"""What a joint may swing at most, by what it did before: the limits that a commissioning and an adaptation share."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from greywhale.base.limits import MEASURED_IN_TRIALS, limit
+from greywhale.base.types import Floats
+from greywhale.measure.swings import CHATTER_AT_REST_HZ, RATTLE_MOVING_RAD
+
+
+@dataclass(frozen=True)
+class SwingLimits:
+    """How much more than before a joint may swing. `measure/swings.py` says what each kind of swinging is."""
+
+    max_unrest_rad: float = limit(0.005, "rad rms", "more unrest than this anybody sees, unless it was there before")
+    unseen_unrest_rad: float = limit(
+        0.0015,
+        "rad rms",
+        "less unrest nobody sees, whatever it was before; other motions show more of it than a check, so the limit "
+        "keeps clear of twice what it was",
+    )
+    unseen_rattle_rad: float = limit(0.003, "rad rms", "less rattling nobody sees, whatever it was before")
+    unrest_growth: float = limit(1.5, "times before", "unrest may grow so much, between the two sizes above")
+    rattle_growth: float = limit(2.0, "times before", "rattling may grow so much, up to what a moving joint may rattle")
+    voltage_growth: float = limit(
+        1.1,
+        "times before",
+        "chatter and ripple differ by a few per cent with the same controllers",
+        MEASURED_IN_TRIALS,
+    )
+    repeat_share: float = limit(
+        0.04,
+        "of before",
+        "two recordings with the same controllers differ by so much, since friction holds a joint now here, now there",
+        MEASURED_IN_TRIALS,
+    )
+    bearable_excess: float = limit(
+        1.15,
+        "times the limit",
+        "unrest, rattling, chatter and ripple differ from trial to trial with the same controllers; up to this one of "
+        "them can be borne",
+        MEASURED_IN_TRIALS,
+    )
+
+
+SWING_LIMITS = SwingLimits()
+
+
+@dataclass(frozen=True)
+class AllowedSwings:
+    """What each joint may swing at most, (rows, 4) each: a row is a part of a check, or a record as a whole."""
+
+    unrest: Floats  # rad rms
+    rattle: Floats  # rad rms
+    chatter: Floats  # 1/s
+    ripple: Floats  # V rms
+
+    @classmethod
+    def beside(
+        cls,
+        unrest: Floats,
+        rattle: Floats,
+        chatter: Floats,
+        ripple: Floats,
+        quiet_v: float,
+        limits: SwingLimits = SWING_LIMITS,
+        *,
+        growth: Floats | None = None,
+        unseen_unrest: Floats | None = None,
+        unseen_rattle: Floats | None = None,
+    ) -> AllowedSwings:
+        """From what was measured before, (rows, 4) each, NaN where there is none. What was there before is never too
+        much, nor is ripple of `quiet_v`. Growth and what nobody sees may differ from row to row.
+        """
+        if growth is None:
+            growth = np.full(unrest.shape, limits.unrest_growth)
+        least_unrest = limits.unseen_unrest_rad if unseen_unrest is None else unseen_unrest
+        least_rattle = limits.unseen_rattle_rad if unseen_rattle is None else unseen_rattle
+
+        def allowed(before: Floats, grow: Callable[[Floats], Floats], least: Floats | float, most: float) -> Floats:
+            known = np.nan_to_num(before)
+            return np.maximum(np.clip(grow(known), least, most), known * (1.0 + limits.repeat_share))
+
+        return cls(
+            unrest=allowed(
+                unrest, lambda known: _grow_beyond_noise(known, growth), least_unrest, limits.max_unrest_rad
+            ),
+            rattle=allowed(rattle, lambda known: limits.rattle_growth * known, least_rattle, RATTLE_MOVING_RAD),
+            chatter=np.maximum(CHATTER_AT_REST_HZ, limits.voltage_growth * np.nan_to_num(chatter)),
+            ripple=np.maximum(quiet_v, limits.voltage_growth * np.nan_to_num(ripple)),
+        )
+
+
+def _grow_beyond_noise(unrest: Floats, growth: Floats) -> Floats:
+    """The potentiometers' noise, which does not grow, is at most what the quietest joint shows in the same part."""
+    seen = np.where(unrest > 0.0, unrest, np.inf).min(axis=1, keepdims=True)  # a joint that is not in use has none
+    noise = np.where(np.isfinite(seen), seen, 0.0)
+    grown: Floats = np.sqrt(noise**2 + growth**2 * np.maximum(unrest**2 - noise**2, 0.0))
+    return grown

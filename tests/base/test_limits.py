@@ -1,0 +1,61 @@
+"""Limits with a reason: what a table shows of them, what differs, and that every room reads its own."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import greywhale
+from greywhale.adapt.limits import ADAPTATION_LIMITS
+from greywhale.base.limits import BY_JUDGEMENT, changed, limit, limits_in, markdown_table
+from greywhale.measure.limits import SWING_LIMITS
+from tests.support.limits import attributes_read
+
+ROOMS = {"adapt": ADAPTATION_LIMITS, "measure": SWING_LIMITS}
+# What reads them beside the room that keeps them.
+READERS = {"measure": ("measure", "commission", "adapt")}
+PACKAGE = Path(greywhale.__file__).parent
+
+
+@dataclass(frozen=True)
+class Rest:
+    still_rad: float = limit(0.02, "rad", "a hand trembles")
+
+
+@dataclass(frozen=True)
+class Own:
+    rest: Rest = Rest()
+    swings: Any = SWING_LIMITS
+    gaps_m: tuple[float, ...] = limit((1.5, 2.0), "m", "two of them", "measured")
+
+
+def test_a_table_has_a_row_for_each_limit_of_its_own() -> None:
+    assert markdown_table(Own()).splitlines()[2:] == [
+        f"| `rest.still_rad` | 0.02 rad | a hand trembles | {BY_JUDGEMENT} |",
+        "| `gaps_m` | 1.5, 2 m | two of them | measured |",
+    ]
+
+
+def test_what_differs_is_named() -> None:
+    other = replace(Own(), rest=Rest(0.03), swings=replace(SWING_LIMITS, unrest_growth=3.0))
+    assert changed(other, Own()) == {"rest.still_rad": 0.03, "swings.unrest_growth": 3.0}
+    assert changed(Own(), Own()) == {}
+
+
+@pytest.mark.parametrize("room", ROOMS)
+def test_a_room_reads_all_its_limits(room: str) -> None:
+    names = {one.name.rpartition(".")[2] for one in limits_in(ROOMS[room])}
+    read = [attributes_read(PACKAGE / one) for one in READERS.get(room, (room,))]
+    assert names - set().union(*read) == set()
+
+
+@pytest.mark.parametrize("room", ROOMS)
+def test_each_limit_has_a_reason_that_fits_into_a_table(room: str) -> None:
+    for one in limits_in(ROOMS[room]):
+        assert one.reason, one.name
+        assert one.origin, one.name
+        assert "|" not in f"{one.unit}{one.reason}{one.origin}"
+        assert not one.reason.endswith(".")
