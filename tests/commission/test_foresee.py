@@ -7,7 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from greywhale.commission.foresee import MOST, Foresight, foresee
+from greywhale.commission.foresee import Foresight, foresee
+from greywhale.commission.limits import COMMISSIONING_LIMITS
 from greywhale.commission.trials import Trials
 from greywhale.files.arm import default_arm
 from greywhale.loop import multi_steps
@@ -45,7 +46,7 @@ def test_a_joint_is_not_blamed_for_its_neighbours(trials: Trials, foresight: For
     assert foresight.ratios(rows)[2] > 1.02
     assert not foresight.clauses(rows)[2], "it keeps its controller"
     rows[2] = scaled(trials, 2, 1.1)[2]
-    assert foresight.ratios(rows)[2] > MOST
+    assert foresight.ratios(rows)[2] > COMMISSIONING_LIMITS.steps.max_error_share
     assert not foresight.clauses(rows)[2], "it would be worse without"
     rows[2] = scaled(trials, 2, 0.9)[2]
     assert "follows steps worse" in foresight.clauses(rows)[2]
@@ -68,7 +69,7 @@ def test_what_is_foreseen_happens_on_the_arm(trials: Trials, rig: SimulatedRig, 
         log = rig.play(motion, trials.book.path(f"{name}.csv"), table, watched=False).log
         errors.append(np.mean((log.leader[:, 1] - log.follower[:, 1]) ** 2))
     assert errors[1] / errors[0] == pytest.approx(foresight.ratios(rows)[1], abs=0.01)
-    assert errors[1] / errors[0] > MOST
+    assert errors[1] / errors[0] > COMMISSIONING_LIMITS.steps.max_error_share
 
 
 def test_a_model_that_is_wrong_about_quick_moves_is_not_asked(trials: Trials, rig: SimulatedRig) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +12,7 @@ import pytest
 from greywhale.arm import ArmParameters
 from greywhale.base.errors import UserError
 from greywhale.commission import CommissioningRequest, commission, learn, run
+from greywhale.commission.limits import COMMISSIONING_LIMITS, CommissioningLimits
 from greywhale.commission.page import facts, save_page
 from greywhale.commission.result import CommissioningResult, errors_beside
 from greywhale.files.arm import default_arm, load_arm
@@ -22,6 +23,7 @@ from greywhale.loop.controllers import controllers_of
 from greywhale.protocol.table import ParameterTable
 from tests.commission.simulated import SimulatedRig, in_no_time, options_in
 from tests.support.arms import make_arm
+from tests.support.limits import copy_of, reads_of
 from tests.tune.models import write_model
 
 pytestmark = pytest.mark.slow
@@ -40,6 +42,11 @@ class Whole:
     rig: SimulatedRig
     options: Make
     outcome: CommissioningResult
+
+
+def ending(**other: float) -> CommissioningLimits:
+    """The usual limits, but for some of those at which a round ends."""
+    return replace(COMMISSIONING_LIMITS, rounds=replace(COMMISSIONING_LIMITS.rounds, **other))
 
 
 @pytest.fixture(scope="module")
@@ -102,9 +109,10 @@ def test_a_round_ends_where_more_trials_are_not_worth_their_time(
     assert [step for step in steps if "trial" in step[0]] == [
         (f"round 1, trial {number} of 3 at most: recording", note) for number, note in enumerate(["", *beside[:2]], 1)
     ]
-    monkeypatch.setattr(run, "GOOD", 1.0)
     rig.before = rig.stored = outcome.trials.table
-    assert len(commission(options(out=tmp_path / "all good")).rounds[0].trials) == 1
+    assert (
+        len(commission(options(out=tmp_path / "all good", judging=ending(good_error_share=1.0))).rounds[0].trials) == 1
+    )
 
 
 def test_what_failed_is_searched_again_and_what_did_not_keeps_its_controller(whole: Whole) -> None:
@@ -162,8 +170,7 @@ def test_without_a_model_the_arm_is_excited_and_identified(
     monkeypatch.setattr(learn, "identify", identify)
     monkeypatch.setattr(learn, "validated", lambda found, logs, tables: note("validate", logs, tables))
     monkeypatch.setattr(run, "DESIGN_BUDGET", 2)
-    monkeypatch.setattr(run, "WANTING", 0.0)
-    outcome = commission(options(model=None, rounds=2, trials=2))
+    outcome = commission(options(model=None, rounds=2, trials=2, judging=ending(max_error_share=0.0)))
     assert begun == [None, outcome.rounds[0].learnt.arm], "the second model goes on from the first"
     played = [one.name for one in outcome.rounds[0].trials if not one.stopped]
     assert steps == [
@@ -210,3 +217,20 @@ def test_of_an_arm_with_two_joints_those_are_tried_and_the_others_keep_what_they
     told = facts(outcome)
     assert told["joints"] == ["0 base yaw", "1 shoulder pitch"]
     assert len(told["before"]["rows"][0]["cells"]) == 2
+
+
+def test_a_commissioning_reads_no_limits_but_those_that_it_was_handed(
+    rig: SimulatedRig, options: Make, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """But to say in its journal in which it differs from the usual ones."""
+    in_no_time(rig, monkeypatch)
+    request = options(trials=2, judging=copy_of(COMMISSIONING_LIMITS))
+    monkeypatch.setattr(type(request), "facts", lambda request: {})
+    with reads_of(COMMISSIONING_LIMITS) as read:
+        commission(request)
+    assert read == set()
+
+
+def test_other_limits_are_another_commissioning(options: Make) -> None:
+    assert "judging" not in options().facts()
+    assert options(judging=ending(min_gain=0.2)).facts()["judging"] == {"rounds.min_gain": 0.2}

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from copy import copy
 from dataclasses import fields, replace
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 from greywhale.base.types import show_no_progress
-from greywhale.commission import search
 from greywhale.commission.foresee import foresee
 from greywhale.commission.journal import CommissioningJournal
+from greywhale.commission.limits import COMMISSIONING_LIMITS
 from greywhale.commission.measures import measure
 from greywhale.commission.motions import PARTS, check_motion
 from greywhale.commission.search import CheckOnModel
@@ -21,6 +24,7 @@ from greywhale.loop.controllers import controllers_of
 from greywhale.tune.judge.margins import with_gain
 from greywhale.tune.model import load_model
 from tests.commission.simulated import KD, KI, KP, ROOM, SimulatedRig
+from tests.support.limits import copy_of, reads_of
 from tests.tune.models import write_model
 
 pytestmark = pytest.mark.slow
@@ -51,17 +55,21 @@ def varied(check: CheckOnModel, joint: int, factors: dict[int, float]) -> np.nda
     return rows
 
 
+def searching(check: CheckOnModel, **other: Any) -> CheckOnModel:
+    """The same with some other limits of the search."""
+    trials = copy(check.trials)
+    trials.judging = replace(trials.judging, search=replace(trials.judging.search, **other))
+    return replace(check, trials=trials)
+
+
 def costs_beside(check: CheckOnModel, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """The costs (4,) of the controllers from before, and of these."""
     before, after = check.costs(np.stack([controllers_of(check.trials.table), rows]))
     return before, after
 
 
-def test_what_the_search_finds_follows_better_on_the_arm(
-    check: CheckOnModel, rig: SimulatedRig, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(search, "PACKS", ((0.1, 96),))
-    monkeypatch.setattr(search, "POOR", np.inf)
+def test_what_the_search_finds_follows_better_on_the_arm(check: CheckOnModel, rig: SimulatedRig) -> None:
+    check = searching(check, packs=((0.1, 96),), retry_error=np.inf)
     trials = check.trials
     found = check.search(controllers_of(trials.table), ALL, 0, show_no_progress)
     trial = trials.play(rig, found)  # type: ignore[arg-type]
@@ -129,9 +137,9 @@ def test_what_the_search_finds_is_good_as_a_whole(check: CheckOnModel) -> None:
     assert after[2] < 100.0
 
 
-def test_a_dead_end_of_the_tuning_is_left(check: CheckOnModel, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_dead_end_of_the_tuning_is_left(check: CheckOnModel) -> None:
     """A joint that hardly moves: no narrow search around it finds one that follows."""
-    monkeypatch.setattr(search, "PACKS", ((0.05, 32),))
+    check = searching(check, packs=((0.05, 32),))
     dead = varied(check, 1, {KP: 0.02, KD: 0.02, KI: 0.02})
     before, after = costs_beside(check, check.search(dead, ALL, 0, show_no_progress))
     assert after[1] < 1.5 * before[1] < 0.1 * costs_beside(check, dead)[1][1]
@@ -156,9 +164,21 @@ def test_what_the_arm_showed_beyond_the_model_the_model_may_show_less_of(check: 
     assert aims.unrest[:, 1] == pytest.approx(0.5 * check.aims.unrest[:, 1])
 
 
-def test_a_joint_that_passed_keeps_its_controller(check: CheckOnModel, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(search, "PACKS", ((0.1, 32),))
-    monkeypatch.setattr(search, "POOR", np.inf)
+def test_a_joint_that_passed_keeps_its_controller(check: CheckOnModel) -> None:
+    check = searching(check, packs=((0.1, 32),), retry_error=np.inf)
     begin = varied(check, 1, {KP: 0.5})
     found = check.search(begin, np.array([False, True, True, False]), 0, show_no_progress)
     assert (found != begin).any(axis=1).tolist() == [False, True, True, False]
+
+
+def test_a_search_reads_no_limits_but_those_that_it_was_handed(rig: SimulatedRig, tmp_path: Path) -> None:
+    """With the least of a search, and with what a trial showed."""
+    own = copy_of(replace(COMMISSIONING_LIMITS, search=replace(COMMISSIONING_LIMITS.search, packs=((0.05, 4),))))
+    with CommissioningJournal(tmp_path / "trials", {}, resume=False) as journal, reads_of(COMMISSIONING_LIMITS) as read:
+        trials = Trials(journal, check_motion(ROOM, own.motion), rig.before, own)
+        before = trials.play_before(rig)  # type: ignore[arg-type]
+        foresight = foresee(default_arm(), trials.table, trials.check, before.traces, before.measured, own.steps)
+        model = load_model(write_model(tmp_path / "model.toml"), samples=1, force=True)
+        check = CheckOnModel.of(model, trials, foresight, seed=0, threads=1).corrected(before)
+        check.search(controllers_of(trials.table), ALL, 0, show_no_progress)
+    assert read == set()

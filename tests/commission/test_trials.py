@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 from greywhale.base.errors import UserError
-from greywhale.commission.judge import BEARABLE
 from greywhale.commission.result import CommissioningResult
 from greywhale.commission.trials import Trial, Trials
 from greywhale.loop.controllers import controllers_of
+from greywhale.measure.limits import SWING_LIMITS
 from tests.commission.simulated import KD, KI, KP, SimulatedRig
 
 BETTER, WILD = 2.0, 40.0  # times the stiffness of before
@@ -47,7 +47,7 @@ def test_better_controllers_pass_and_are_ranked(trials: Trials, rig: SimulatedRi
 def judged(trial: Trial, faults: tuple[str, ...], bearable: bool, score: float) -> Trial:
     """The trial with other verdicts: joint 0 has these faults, and all joints follow alike."""
     verdicts = [replace(one, faults=(), bearable=True, score=score, share=0.25) for one in trial.verdicts]
-    verdicts[0] = replace(verdicts[0], faults=faults, bearable=bearable, excess=BEARABLE)
+    verdicts[0] = replace(verdicts[0], faults=faults, bearable=bearable, excess=SWING_LIMITS.bearable_excess)
     return replace(trial, verdicts=tuple(verdicts))
 
 

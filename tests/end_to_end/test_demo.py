@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +13,8 @@ from greywhale.arm.parameters import JOINT_NAMES
 from greywhale.base.errors import UserError
 from greywhale.cli.story import BenchProcess, DemoOptions, DemoResult, practice, run, story
 from greywhale.cli.story.recorder import record_motion
-from greywhale.commission import journal, motions, search
+from greywhale.commission import CommissioningRequest, journal
+from greywhale.commission.limits import CommissioningLimits, MotionLimits, SearchLimits
 from greywhale.files.leader import save_leader
 from greywhale.files.log import Log
 from greywhale.files.model import arm_toml
@@ -35,12 +37,12 @@ def test_the_demo_tells_its_story_and_proves_its_controllers_on_the_arm(
     few_plants(monkeypatch)
     monkeypatch.setattr(practice, "DESIGN_BUDGET", 30)
     monkeypatch.setattr(story, "PROVING_TRIALS", 1)
-    monkeypatch.setattr(search, "PACKS", ((0.1, 12),))
-    monkeypatch.setattr(search, "POOR", 1e9)
-    short = {"REACHES_S": 2.0, "HOLD_S": 0.5, "SLOW_S": 1.0, "PAUSE_S": 0.3, "MOVES": (0.5,), "REST_S": 0.5}
-    short |= {"SMALL_RAD": (0.1, 0.0), "STILL_SHARES": (0.6, 0.0), "STILL_HOLD_S": 0.3}
-    for name, value in short.items():
-        monkeypatch.setattr(motions, name, value)
+    short = MotionLimits(
+        reaches_s=2.0, hold_s=0.5, slow_s=1.0, pause_s=0.3, move_shares=(0.5,), rest_s=0.5,
+        small_rad=(0.1, 0.0), still_shares=(0.6, 0.0), still_hold_s=0.3,
+    )  # fmt: skip
+    judging = CommissioningLimits(motion=short, search=SearchLimits(packs=((0.1, 12),), retry_error=1e9))
+    monkeypatch.setattr("greywhale.commission.CommissioningRequest", partial(CommissioningRequest, judging=judging))
     told: list[str] = []
     out = tmp_path / "demo"
     (out / "commission").mkdir(parents=True)

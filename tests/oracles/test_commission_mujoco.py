@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from greywhale.commission.judge import KEPT_SHARE, MOST_UNREST
+from greywhale.commission.limits import COMMISSIONING_LIMITS
 from greywhale.loop import human_reaches, multi_steps
 from tools.support.foreign_arm import Commissioned, bench_of, commissioned, foreign_arm
 
@@ -24,14 +24,14 @@ def test_an_arm_of_another_engine_follows_better_and_rests(tmp_path: Path) -> No
         done = commissioned(bench, tmp_path, unseen, budget=BUDGET, trials=TRIALS)
     before, after = done.before, done.after
     # A joint that keeps its controller feels its neighbours' quicker moves.
-    most = np.where(done.kept, 1.0 + KEPT_SHARE, 1.0)
+    most = np.where(done.kept, 1.0 + COMMISSIONING_LIMITS.judge.kept_share, 1.0)
     for name in unseen:
         ratios = after.error[name] / before.error[name]
         assert np.all(ratios <= most), f"a joint follows {name} worse, {ratios} of before; {tried(done)}"
     reaches = after.error["human reaches"].sum() / before.error["human reaches"].sum()
     assert reaches <= HUMAN_SHARE, tried(done)
     rests, rested = after.unrest["multi-steps"], before.unrest["multi-steps"]
-    assert np.all(rests <= np.minimum(MOST_UNREST, 2.0 * rested)), tried(done)
+    assert np.all(rests <= np.minimum(COMMISSIONING_LIMITS.swings.max_unrest_rad, 2.0 * rested)), tried(done)
 
 
 def tried(done: Commissioned) -> str:

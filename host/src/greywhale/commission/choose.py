@@ -16,7 +16,6 @@ from greywhale.commission.judge import TrialVerdict
 from greywhale.commission.trials import Trial, Trials
 from greywhale.loop.controllers import controllers_of
 
-MOST_CONFIRMATIONS = 12
 Row = Integers  # (13,)
 
 
@@ -59,7 +58,7 @@ def confirm(trials: Trials, joints: Sequence[JointTrials], arm: Callable[[], Arm
         return next(left, before[joint])
 
     rows = np.array([best(joint) for joint in range(len(joints))])
-    for _ in range(MOST_CONFIRMATIONS):
+    for _ in range(trials.judging.rounds.max_confirmations):
         known = next((one for one in trials.done if np.array_equal(one.rows, rows)), None)
         trial = known or trials.play(None if trials.known() else arm(), rows)
         if trial.bearable:

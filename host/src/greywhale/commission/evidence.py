@@ -9,6 +9,7 @@ import numpy as np
 from greywhale.arm import ArmParameters
 from greywhale.arm.plants import column, plant_row
 from greywhale.base.types import Floats
+from greywhale.commission.limits import EvidenceLimits
 from greywhale.commission.trials import Trial, Trials
 from greywhale.files.log import Log, read_evidence
 from greywhale.loop.led_model import predict
@@ -18,17 +19,6 @@ from greywhale.protocol.firmware import JOINTS, TICK_S
 from greywhale.protocol.table import CONTROLLER_COLUMNS, ParameterTable
 
 KP = CONTROLLER_COLUMNS.index("kp")
-
-# Trials whose logs a later round fits, besides the excitation.
-MOST_FITTED = 2
-# What may be wrong with a model under which a joint rests and on the arm does not, mildest first: more play at the
-# potentiometer or a wider gap (rad, to either side), a slower potentiometer (s), or more loop gain.
-GAPS = (0.002, 0.005, 0.01, 0.02)
-LAGS = (1e-3, 2e-3, 4e-3)
-GAINS = (1.4, 2.0, 2.8)
-LAST_S = 0.8  # of a log that ended in hunting
-# A plant shows unrest from this share of the measured one on.
-SHOWN = 0.5
 
 
 @dataclass(frozen=True)
@@ -41,13 +31,14 @@ class Evidence:
 
 def to_fit(excite: Log, trials: Trials) -> Evidence:
     """The excitation, and the best trials that were played to their end."""
-    best = _whole(trials)[:MOST_FITTED]
+    best = _whole(trials)[: trials.judging.evidence.fitted_trials]
     return Evidence((excite, *(read_evidence(one.path) for one in best)), (trials.table, *(one.table for one in best)))
 
 
 def to_validate(trials: Trials) -> Evidence:
     """The trial of the controllers from before, and the best that is not fitted."""
-    chosen = (trials.before, *_whole(trials)[MOST_FITTED : MOST_FITTED + 1])
+    fitted = trials.judging.evidence.fitted_trials
+    chosen = (trials.before, *_whole(trials)[fitted : fitted + 1])
     return Evidence(tuple(read_evidence(one.path) for one in chosen), tuple(one.table for one in chosen))
 
 
@@ -64,33 +55,34 @@ def failing_plants(arm: ArmParameters, trials: Trials) -> Floats:
         if restless:
             # The one nearest to rest shows best where the margin is.
             calmest = min(restless, key=lambda one: int(one.rows[joint, KP]))
-            plant = _plant_that_hunts(arm, calmest, joint)
+            plant = _plant_that_hunts(arm, calmest, joint, trials.judging.evidence)
             if plant is not None:
                 found.append(plant)
     return np.array(found) if found else np.zeros((0, len(plant_row(arm))))
 
 
-def _plant_that_hunts(arm: ArmParameters, trial: Trial, joint: int) -> Floats | None:
+def _plant_that_hunts(arm: ArmParameters, trial: Trial, joint: int, limits: EvidenceLimits) -> Floats | None:
     """The model itself where it hunts; None where no plant in reach does."""
-    plants = _variants(plant_row(arm), joint)
+    plants = _variants(plant_row(arm), joint, limits)
     measured = _unrest(trial.traces, joint)
     for plant, shown in zip(plants, predict(arm, trial.table, trial.traces, plants), strict=True):
-        if _shows(shown, trial, joint, measured):
+        if _shows(shown, trial, joint, measured, limits):
             found: Floats = plant
             return found
     return None
 
 
-def _variants(plant: Floats, joint: int) -> Floats:
+def _variants(plant: Floats, joint: int, limits: EvidenceLimits) -> Floats:
     """The model itself, then with more play, wider gaps (where its teeth are not rigid), lag and gain: (n, columns)."""
     rows = [plant]
     gap, stiffness, gain = (column(name, joint) for name in ("half_gap", "stiffness", "torque_per_volt"))
-    toothed = ((gap, GAPS),) if plant[stiffness] > 0.0 else ()
-    for place, sizes in ((column("pot_play", joint), GAPS), *toothed, (column("pot_lag", joint), LAGS)):
+    toothed = ((gap, limits.gaps_rad),) if plant[stiffness] > 0.0 else ()
+    play, lag = (column("pot_play", joint), limits.gaps_rad), (column("pot_lag", joint), limits.lags_s)
+    for place, sizes in (play, *toothed, lag):
         for more in sizes:
             rows.append(plant.copy())
             rows[-1][place] += more
-    for factor in GAINS:
+    for factor in limits.gains:
         rows.append(plant.copy())
         rows[-1][gain] *= factor
     return np.array(rows)
@@ -100,8 +92,8 @@ def _unrest(traces: Traces, joint: int) -> float:
     return float(np.nan_to_num(unrest(traces.leader, traces.follower)[joint]))
 
 
-def _shows(shown: Traces, trial: Trial, joint: int, measured: float) -> bool:
+def _shows(shown: Traces, trial: Trial, joint: int, measured: float, limits: EvidenceLimits) -> bool:
     if not trial.stopped:
-        return _unrest(shown, joint) >= SHOWN * measured
-    first = max(0, len(shown.follower) - round(LAST_S / TICK_S))
+        return _unrest(shown, joint) >= limits.shown_share * measured
+    first = max(0, len(shown.follower) - round(limits.hunting_end_s / TICK_S))
     return bool(turns_of(shown.follower, LIMIT_CYCLE.band_rad, first)[joint] >= LIMIT_CYCLE.turns)

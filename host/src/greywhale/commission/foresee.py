@@ -16,6 +16,7 @@ import numpy as np
 from greywhale.arm import ArmParameters
 from greywhale.arm.plants import plant_row
 from greywhale.base.types import Controllers, Flags, Floats
+from greywhale.commission.limits import COMMISSIONING_LIMITS, StepLimits
 from greywhale.commission.measures import Measures, measure
 from greywhale.commission.motions import PARTS, Check
 from greywhale.loop import Experiment, multi_steps
@@ -27,10 +28,6 @@ from greywhale.protocol.firmware import JOINTS
 from greywhale.protocol.table import ParameterTable
 from greywhale.tune.search.training import clip_motion, reach
 
-# Of the error before, at most so much: the rest of the way to 1 is the model's own error.
-MOST = 0.99
-# A model is believed that predicts the error before, in the check's moves, to within this share.
-BELIEVED = 0.1
 SEED = 7
 LEAST = 1e-12  # rad², the error of a joint that is not in use
 
@@ -44,6 +41,7 @@ class Foresight:
     before: Controllers
     error: Floats  # (4,) rad²
     believed: Flags
+    limits: StepLimits = COMMISSIONING_LIMITS.steps
 
     def ratios(self, rows: Controllers) -> Floats:
         """(4,): each joint's error on steps with controllers (4, 13), as a share of that before."""
@@ -65,7 +63,7 @@ class Foresight:
         """(4): what speaks against each joint's controller, "" for nothing; a controller from before always passes."""
         changed = (rows != self.before).any(axis=1)
         ratios = self.ratios(rows)
-        suspects = changed & self.believed & (ratios > MOST)
+        suspects = changed & self.believed & (ratios > self.limits.max_error_share)
         return tuple(
             f"by the model, it follows steps worse than before ({ratios[joint]:.3g} times the error)"
             if suspects[joint] and not self._is_better_than_before(rows, joint, float(ratios[joint]))
@@ -80,14 +78,21 @@ class Foresight:
         return ratio < float(self.ratios(reverted)[joint])
 
 
-def foresee(arm: ArmParameters, table: ParameterTable, check: Check, traces: Traces, measured: Measures) -> Foresight:
+def foresee(
+    arm: ArmParameters,
+    table: ParameterTable,
+    check: Check,
+    traces: Traces,
+    measured: Measures,
+    limits: StepLimits = COMMISSIONING_LIMITS.steps,
+) -> Foresight:
     """What a model of this arm foresees; `traces` and `measured` are those of the check before, with `table`. The steps
     go wherever the board's limits let the arm go: after the commissioning a hand will.
     """
     moves = PARTS.index("moves")
     predicted = measure(predict(arm, table, traces)[0], check, table.supply_v).error[moves]
-    believed = np.abs(predicted / np.maximum(measured.error[moves], LEAST) - 1.0) <= BELIEVED
+    believed = np.abs(predicted / np.maximum(measured.error[moves], LEAST) - 1.0) <= limits.believed_share
     plant, before = plant_row(arm)[None], controllers_of(table)
     experiment = Experiment(clip_motion(multi_steps(), *reach(arm, table, plant)), arm, table=table, seed=SEED)
     found = experiment.run_exact(before[None], plant, every=1)
-    return Foresight(experiment, plant, before, found.mse[0], believed)
+    return Foresight(experiment, plant, before, found.mse[0], believed, limits)

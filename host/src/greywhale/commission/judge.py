@@ -2,38 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from greywhale.base.types import Flags, Floats
+from greywhale.commission.limits import COMMISSIONING_LIMITS, CommissioningLimits
 from greywhale.commission.measures import HAND_LED, HOLDING, Measures
 from greywhale.commission.motions import PARTS
-from greywhale.measure.swings import CHATTER_AT_REST_HZ, RATTLE_MOVING_RAD
+from greywhale.measure.limits import AllowedSwings
+from greywhale.measure.swings import RATTLE_MOVING_RAD
 from greywhale.protocol.firmware import JOINTS
 
-# Unrest and rattling may grow by these factors, but not above this (rad rms). Below the second number nobody sees them,
-# whatever they were. Other motions show more unrest than the check: so its limit keeps clear of twice what it was.
-MOST_UNREST, LEAST_UNREST = 0.005, 0.0015
-LEAST_RATTLE = 0.003
-UNREST_GROWTH, RATTLE_GROWTH = 1.5, 2.0
-VOLTAGE_GROWTH = 1.1  # of chatter and ripple, which differ by a few per cent with the same controllers
-# Unrest, rattling, chatter and ripple differ from trial to trial, also with the same controllers. Up to so many times
-# its limit one of them can be borne, at a price: such a joint must follow with half the error of one that passes.
-BEARABLE, PRICE = 1.15, 2.0
-# Two recordings with the same controllers may differ by so much: as a share, and in rad² (1 mrad rms). Friction holds a
-# joint now here, now there.
-SAME_SHARE, SAME_RAD2 = 0.04, 1e-6
-# Where a joint hardly moves, friction and play make its error: so much more (rad rms) nobody sees. While it holds still
-# it stays where friction left it: one controller 1 mrad away from its leader in one trial, 6 in another.
-UNSEEN_RAD, UNSEEN_HOLDING_RAD = 0.002, 0.006
+# Where a joint hardly moves, friction and play make its error.
 HARDLY_MOVED = [PARTS.index(name) for name in ("small moves", HOLDING)]
-# A joint that keeps its controller feels its neighbours' quicker moves, and how stiffly they rest. It is no worse
-# controller, so what nobody sees never counts against it.
-KEPT_SHARE, KEPT_GROWTH = 0.1, 2.0
-# While it holds still, quicker neighbours push it; that it rests by itself shows after its own moves.
-PUSHED, LEAST_PUSHED = PARTS.index(HOLDING), 0.003
+# While a joint holds still, quicker neighbours push it; that it rests by itself shows after its own moves.
+PUSHED = PARTS.index(HOLDING)
 # A joint that is led slowly sticks and slips, a stiffer one more often: at 15 Hz what was at 5 Hz before, below the
 # band of rattling. So twice what was seen before says little here.
 SLOW = PARTS.index("slow motion")
@@ -57,28 +42,34 @@ class Limits:
     error: Floats
 
     @classmethod
-    def of(cls, before: Measures, kept: Flags, quiet_v: float) -> Limits:
+    def of(
+        cls,
+        before: Measures,
+        kept: Flags,
+        quiet_v: float,
+        judging: CommissioningLimits = COMMISSIONING_LIMITS,
+    ) -> Limits:
         """What was there before is never too much, nor is ripple of `quiet_v`. `kept` (4,) marks joints whose
-        controllers are those from before.
+        controllers are those from before: they are no worse controllers, so what nobody sees never counts against
+        them.
         """
-        error = (1.0 + np.where(kept, KEPT_SHARE, SAME_SHARE)) * before.error + SAME_RAD2
-        unseen_rad = np.full((len(PARTS), 1), UNSEEN_RAD)
-        unseen_rad[PARTS.index(HOLDING)] = UNSEEN_HOLDING_RAD
+        own, swings = judging.judge, judging.swings
+        error = (1.0 + np.where(kept, own.kept_share, swings.repeat_share)) * before.error + own.repeat_rad2
+        unseen_rad = np.full((len(PARTS), 1), own.unseen_rad)
+        unseen_rad[PARTS.index(HOLDING)] = own.unseen_holding_rad
         unseen = np.maximum(error, (np.sqrt(before.error) + unseen_rad) ** 2)
         error = np.where(kept, unseen, error)
         error[HARDLY_MOVED] = unseen[HARDLY_MOVED]
-        growth = np.tile(np.where(kept, KEPT_GROWTH, UNREST_GROWTH), (len(PARTS), 1))
-        least = np.full((len(PARTS), 1), LEAST_UNREST)
-        growth[PUSHED], least[PUSHED] = KEPT_GROWTH, LEAST_PUSHED
-        least_rattle = np.full((len(PARTS), 1), LEAST_RATTLE)
+        growth = np.tile(np.where(kept, own.kept_growth, swings.unrest_growth), (len(PARTS), 1))
+        least = np.full((len(PARTS), 1), swings.unseen_unrest_rad)
+        growth[PUSHED], least[PUSHED] = own.kept_growth, own.pushed_rad
+        least_rattle = np.full((len(PARTS), 1), swings.unseen_rattle_rad)
         least_rattle[SLOW] = RATTLE_MOVING_RAD
-        return cls(
-            unrest=_allowed(before.unrest, lambda known: _grow_beyond_noise(known, growth), least, MOST_UNREST),
-            rattle=_allowed(before.rattle, lambda known: RATTLE_GROWTH * known, least_rattle, RATTLE_MOVING_RAD),
-            chatter=np.maximum(CHATTER_AT_REST_HZ, VOLTAGE_GROWTH * np.nan_to_num(before.chatter)),
-            ripple=np.maximum(quiet_v, VOLTAGE_GROWTH * np.nan_to_num(before.ripple)),
-            error=error,
-        )
+        most = AllowedSwings.beside(
+            before.unrest, before.rattle, before.chatter, before.ripple, quiet_v, swings,
+            growth=growth, unseen_unrest=least, unseen_rattle=least_rattle,
+        )  # fmt: skip
+        return cls(most.unrest, most.rattle, most.chatter, most.ripple, error)
 
 
 @dataclass(frozen=True)
@@ -94,6 +85,7 @@ class TrialVerdict:
     share: float  # of all joints' error there, with the controllers from before
     known: bool  # whether the joint can be judged: the check was whole, or this joint ended it
     bearable: bool  # whether it passed, or has no other fault than a little too much of one of these
+    judging: CommissioningLimits = field(default=COMMISSIONING_LIMITS, repr=False, compare=False)
 
     @property
     def hunts(self) -> bool:
@@ -109,8 +101,8 @@ class TrialVerdict:
         """What joints and sets are chosen by, less is better: the score, and dearer with what has to be borne."""
         if not self.bearable:
             return float("inf")
-        above = 0.0 if self.passed else (self.excess - 1.0) / (BEARABLE - 1.0)
-        return self.score * float(PRICE**above)
+        above = 0.0 if self.passed else (self.excess - 1.0) / (self.judging.swings.bearable_excess - 1.0)
+        return self.score * float(self.judging.judge.bearable_price**above)
 
 
 def judge(
@@ -119,15 +111,24 @@ def judge(
     limits: Limits,
     guilty: Sequence[str],
     foreseen: Sequence[str] = ("",) * JOINTS,
+    judging: CommissioningLimits = COMMISSIONING_LIMITS,
 ) -> tuple[TrialVerdict, ...]:
     """A verdict for every joint; `guilty` has a clause for each joint that ended the trial, `foreseen` for each that a
     model speaks against, "" for the others.
     """
-    return tuple(_judge(measured, before, limits, joint, guilty[joint], foreseen[joint]) for joint in range(JOINTS))
+    return tuple(
+        _judge(measured, before, limits, joint, guilty[joint], foreseen[joint], judging) for joint in range(JOINTS)
+    )
 
 
 def _judge(
-    measured: Measures, before: Measures, limits: Limits, joint: int, guilty: str, foreseen: str
+    measured: Measures,
+    before: Measures,
+    limits: Limits,
+    joint: int,
+    guilty: str,
+    foreseen: str,
+    judging: CommissioningLimits,
 ) -> TrialVerdict:
     faults = [guilty] if guilty else []
     unrest, rattle, chatter, ripple = (_closest(measured, limits, name, joint) for name in RESTLESS)
@@ -152,9 +153,10 @@ def _judge(
     score = float(measured.error[LED, joint].sum() / max(was[joint], 1e-9))
     share = float(was[joint] / max(was.sum(), 1e-9))
     known = measured.whole or bool(faults)
-    hardly = restless and len(faults) == 1 and excess <= BEARABLE
+    hardly = restless and len(faults) == 1 and excess <= judging.swings.bearable_excess
     bearable = measured.whole and (hardly or not faults)
-    return TrialVerdict(joint, tuple(faults), restless, restless and quiet, excess, score, share, known, bearable)
+    chatters = restless and quiet
+    return TrialVerdict(joint, tuple(faults), restless, chatters, excess, score, share, known, bearable, judging)
 
 
 @dataclass(frozen=True)
@@ -176,16 +178,3 @@ def _closest(measured: Measures, limits: Limits, name: str, joint: int) -> _Clos
         return _Closest()
     part = int(np.argmax(np.where(known, values / most, -np.inf)))
     return _Closest(float(values[part]), float(most[part]))
-
-
-def _allowed(before: Floats, grow: Callable[[Floats], Floats], least: Floats | float, most: float) -> Floats:
-    known = np.nan_to_num(before)
-    return np.maximum(np.clip(grow(known), least, most), known * (1.0 + SAME_SHARE))
-
-
-def _grow_beyond_noise(unrest: Floats, growth: Floats) -> Floats:
-    """The potentiometers' noise, which does not grow, is at most what the quietest joint shows in the same part."""
-    seen = np.where(unrest > 0.0, unrest, np.inf).min(axis=1, keepdims=True)  # a joint that is not in use has none
-    noise = np.where(np.isfinite(seen), seen, 0.0)
-    grown: Floats = np.sqrt(noise**2 + growth**2 * np.maximum(unrest**2 - noise**2, 0.0))
-    return grown

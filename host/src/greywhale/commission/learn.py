@@ -25,8 +25,6 @@ from greywhale.tune.report.controller_file import save
 
 # The trials go on with what the search found on the model; a longer one takes more time than it saves.
 BUDGET = DEFAULT_BUDGET // 2
-# A model of this arm predicts each joint's way to within this share of the tracking error (mean squares).
-MOST_APART = 0.5
 
 
 @dataclass(frozen=True)
@@ -127,14 +125,18 @@ class RoundTuner:
         return self.book.path(f"{self._name}.toml")
 
 
-def refuse_other_arm(arm: ArmParameters, name: str, before: Trial, table: ParameterTable) -> None:
-    """Refuse a model that does not predict what this arm did with the controllers from before."""
+def refuse_other_arm(
+    arm: ArmParameters, name: str, before: Trial, table: ParameterTable, max_model_error: float
+) -> None:
+    """Refuse a model that does not predict what this arm did with the controllers from before: each joint's way to
+    within this share of the tracking error (mean squares).
+    """
     shown = predict(arm, table, before.traces)[0]
     apart = np.mean((shown.follower - before.traces.follower) ** 2, axis=0)
     error = np.mean((before.traces.leader - before.traces.follower) ** 2, axis=0)
     shares = apart / np.maximum(error, 1e-9)
     worst = int(np.argmax(shares))
-    if shares[worst] > MOST_APART:
+    if shares[worst] > max_model_error:
         raise AnewError(
             f"{name} is a model of another arm: joint {worst} is {np.sqrt(apart[worst]):.3g} rad (rms) away from where "
             f"it should be, though it follows its leader within {np.sqrt(error[worst]):.3g} rad; leave --model out."

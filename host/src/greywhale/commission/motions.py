@@ -5,30 +5,21 @@ No tuning knows the check. Each set of controllers is led along the same one, po
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from greywhale.base.types import Floats
+from greywhale.commission.limits import COMMISSIONING_LIMITS, MotionLimits
 from greywhale.files.trajectory import Trajectory
 from greywhale.loop import human_reaches
 from greywhale.loop.leader_motions import RANGE_RAD, minimum_jerk
 from greywhale.protocol.firmware import FASTEST_LED_RAD_S, JOINTS
 
 RATE_HZ = 200.0
-# No move is quicker: what a host can lead, with a tenth to spare. (A minimum-jerk move peaks at 1.875 times its mean.)
-FASTEST_RAD_S, PEAK = 0.9 * FASTEST_LED_RAD_S, 1.875
-EDGE_S = 0.04
-FIRST_RAD, FIRST_EDGE_S, FIRST_HOLD_S = 0.15, 0.5, 0.7  # of the little first motion
-SMALL_RAD = (0.1, 0.0)
-# Shares of the room to either side, as steps in turn; each joint begins at another one.
-MOVES = (0.9, -0.6, 0.3)
-HOLD_S, REST_S = 1.3, 2.2  # at the end long enough for a joint that breaks loose late
-REACHES_SEED, REACHES_S = 3281, 5.5  # each joint goes far; these judge nothing anywhere else
-REACHES_SHARE = 0.8  # of the room
-SLOW_S, SLOW_SHARE = 4.0, 0.35
-PAUSE_S = 0.3
-STILL_SHARES, STILL_EDGE_S, STILL_HOLD_S = (0.6, -0.5, 0.0), 0.4, 0.4
+PEAK = 1.875  # of a minimum-jerk move's speed, beside its mean
+REACHES_SEED = 3281  # in these each joint goes far; they judge nothing anywhere else
 PARTS = ("small moves", "moves", "reaches", "slow motion", "holding still")
 
 
@@ -54,26 +45,29 @@ class Check:
     parts: dict[str, tuple[float, float]]
 
 
-def first_motion(room: JointRange, size: float) -> Trajectory:
+def first_motion(room: JointRange, size: float, limits: MotionLimits = COMMISSIONING_LIMITS.motion) -> Trajectory:
     """Every joint goes `size` rad to the side with more room, slowly, and back."""
     side = np.where(room.high - room.pose >= room.pose - room.low, 1.0, -1.0)
     reach = np.minimum(size, np.where(side > 0.0, room.high - room.pose, room.pose - room.low))
     stops = [room.pose, room.pose + side * reach, room.pose]
-    return _through(stops, [FIRST_HOLD_S] * len(stops), FIRST_EDGE_S)
+    return _through(stops, [limits.first_hold_s] * len(stops), limits.first_edge_s, limits)
 
 
-def check_motion(room: JointRange) -> Check:
+def check_motion(room: JointRange, limits: MotionLimits = COMMISSIONING_LIMITS.motion) -> Check:
     """Small moves, moves through the room, human-like reaches, slow motion, and moves of every second joint while the
     others hold still; at rest at the pose between the parts.
     """
-    small = [room.pose, *(_within(room, room.pose + size) for size in SMALL_RAD)]
-    moves = [room.pose, *(room.place(_turned(number)) for number in range(len(MOVES))), room.pose]
+    small = [room.pose, *(_within(room, room.pose + size) for size in limits.small_rad)]
+    turns = (_turned(number, limits.move_shares) for number in range(len(limits.move_shares)))
+    moves = [room.pose, *(room.place(shares) for shares in turns), room.pose]
+    hold, pause = limits.hold_s, limits.pause_s
+    still_holds = [0.1] + [limits.still_hold_s] * (2 * len(limits.still_shares) - 1) + [pause]
     pieces = (
-        _through(small, [PAUSE_S] + [HOLD_S] * len(SMALL_RAD), EDGE_S),
-        _through(moves, [0.1] + [HOLD_S] * (len(moves) - 2) + [REST_S], EDGE_S),
-        _reaches(room),
-        _slow(room),
-        _through(_still(room), [0.1] + [STILL_HOLD_S] * (2 * len(STILL_SHARES) - 1) + [PAUSE_S], STILL_EDGE_S),
+        _through(small, [pause] + [hold] * len(limits.small_rad), limits.edge_s, limits),
+        _through(moves, [0.1] + [hold] * (len(moves) - 2) + [limits.rest_s], limits.edge_s, limits),
+        _reaches(room, limits),
+        _slow(room, limits),
+        _through(_still(room, limits.still_shares), still_holds, limits.still_edge_s, limits),
     )
     time_s, angles = [pieces[0].time_s[:1]], [pieces[0].angles[:1]]
     parts: dict[str, tuple[float, float]] = {}
@@ -85,16 +79,16 @@ def check_motion(room: JointRange) -> Check:
     return Check(Trajectory(np.concatenate(time_s), np.vstack(angles)), parts)
 
 
-def _turned(number: int) -> Floats:
+def _turned(number: int, move_shares: Sequence[float]) -> Floats:
     """The share of every joint at a step; joints 1 and 3 go the other way."""
-    shares = [MOVES[(number + joint) % len(MOVES)] for joint in range(JOINTS)]
+    shares = [move_shares[(number + joint) % len(move_shares)] for joint in range(JOINTS)]
     return np.array([-share if joint % 2 else share for joint, share in enumerate(shares)])
 
 
-def _still(room: JointRange) -> list[Floats]:
+def _still(room: JointRange, still_shares: Sequence[float]) -> list[Floats]:
     """The pose, then moves of joints 0 and 2 while 1 and 3 hold still, then the other way round."""
-    turns = [np.array([share, 0.0, share, 0.0]) for share in STILL_SHARES]
-    turns += [np.array([0.0, share, 0.0, share]) for share in STILL_SHARES]
+    turns = [np.array([share, 0.0, share, 0.0]) for share in still_shares]
+    turns += [np.array([0.0, share, 0.0, share]) for share in still_shares]
     return [room.pose, *(room.place(shares) for shares in turns)]
 
 
@@ -104,12 +98,12 @@ def _within(room: JointRange, angles: Floats) -> Floats:
     return np.clip(np.where(beyond, 2.0 * room.pose - angles, angles), room.low, room.high)
 
 
-def _through(stops: list[Floats], holds: list[float], edge_s: float) -> Trajectory:
+def _through(stops: list[Floats], holds: list[float], edge_s: float, limits: MotionLimits) -> Trajectory:
     """From stop to stop, each held for its time; an edge takes `edge_s`, or longer where it would be too quick."""
     times, rows = [np.zeros(1)], [np.array([stops[0]])]
-    now = holds[0]
+    now, fastest = holds[0], limits.speed_share * FASTEST_LED_RAD_S
     for before, after, hold in zip(stops[:-1], stops[1:], holds[1:], strict=True):
-        edge = max(edge_s, PEAK * float(np.abs(after - before).max()) / FASTEST_RAD_S)
+        edge = max(edge_s, PEAK * float(np.abs(after - before).max()) / fastest)
         grid = np.arange(1, round(edge * RATE_HZ) + 1) / RATE_HZ
         share = minimum_jerk(grid / grid[-1])[:, None]
         times += [np.array([now]), now + grid]
@@ -120,26 +114,26 @@ def _through(stops: list[Floats], holds: list[float], edge_s: float) -> Trajecto
     return Trajectory(np.concatenate(times), np.vstack(rows))
 
 
-def _reaches(room: JointRange) -> Trajectory:
+def _reaches(room: JointRange, limits: MotionLimits) -> Trajectory:
     """Human-like reaches, scaled into the room; from the pose and back to it."""
-    human = human_reaches(REACHES_SEED, REACHES_S)
+    human = human_reaches(REACHES_SEED, limits.reaches_s)
     middle, half = RANGE_RAD.mean(axis=1), 0.5 * (RANGE_RAD[:, 1] - RANGE_RAD[:, 0])
-    shares = REACHES_SHARE * np.clip((human.angles - middle) / half, -1.0, 1.0)
-    return _back(Trajectory(human.time_s, room.place(shares)), room.pose)
+    shares = limits.reaches_share * np.clip((human.angles - middle) / half, -1.0, 1.0)
+    return _back(Trajectory(human.time_s, room.place(shares)), room.pose, limits)
 
 
-def _slow(room: JointRange) -> Trajectory:
+def _slow(room: JointRange, limits: MotionLimits) -> Trajectory:
     """One slow swing to both sides, in which a joint rattles most easily."""
-    time_s = np.arange(round(SLOW_S * RATE_HZ) + 1) / RATE_HZ
-    turn = 2.0 * np.pi * time_s / SLOW_S
-    swing = SLOW_SHARE * np.sin(turn) * minimum_jerk(time_s / 1.0)
+    time_s = np.arange(round(limits.slow_s * RATE_HZ) + 1) / RATE_HZ
+    turn = 2.0 * np.pi * time_s / limits.slow_s
+    swing = limits.slow_share * np.sin(turn) * minimum_jerk(time_s / 1.0)
     sides = np.array([1.0, -1.0, 1.0, -1.0])
     angles = np.array([room.place(share * sides) for share in swing])
-    return Trajectory(np.append(time_s, SLOW_S + PAUSE_S), np.vstack([angles, room.pose]))
+    return Trajectory(np.append(time_s, limits.slow_s + limits.pause_s), np.vstack([angles, room.pose]))
 
 
-def _back(motion: Trajectory, pose: Floats) -> Trajectory:
+def _back(motion: Trajectory, pose: Floats, limits: MotionLimits) -> Trajectory:
     """The motion, then the way to the pose, and a rest there."""
-    way = _through([motion.angles[-1], pose], [0.05, PAUSE_S], 0.5)
+    way = _through([motion.angles[-1], pose], [0.05, limits.pause_s], 0.5, limits)
     times = np.concatenate([motion.time_s, motion.duration_s + way.time_s[1:]])
     return Trajectory(times, np.vstack([motion.angles, way.angles[1:]]))

@@ -6,6 +6,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from greywhale.base.limits import changed
+from greywhale.commission.limits import COMMISSIONING_LIMITS, CommissioningLimits
+
 ROUNDS, TRIALS = 2, 8
 
 
@@ -24,9 +27,11 @@ class CommissioningRequest:
     budget: int | None = None
     threads: int = 0
     resume: bool = False
+    judging: CommissioningLimits = COMMISSIONING_LIMITS
 
     def facts(self) -> dict[str, Any]:
         """What a journal must agree with."""
+        others = changed(self.judging, COMMISSIONING_LIMITS)
         return {
             "arm": self.arm_file,
             "model": None if self.model is None else str(self.model),
@@ -35,4 +40,4 @@ class CommissioningRequest:
             "trials": self.trials,
             "seed": self.seed,
             "budget": self.budget,
-        }
+        } | ({"judging": others} if others else {})

@@ -22,6 +22,7 @@ from greywhale.commission.choose import JointTrials, confirm
 from greywhale.commission.evidence import Evidence, failing_plants, to_fit, to_validate
 from greywhale.commission.foresee import foresee
 from greywhale.commission.journal import AnewError, CommissioningJournal
+from greywhale.commission.limits import COMMISSIONING_LIMITS, RoundLimits
 from greywhale.commission.motions import JointRange, check_motion
 from greywhale.commission.request import CommissioningRequest
 from greywhale.commission.result import CommissioningResult, Round, errors_beside, predict_trial
@@ -42,19 +43,15 @@ from greywhale.tune.model_checks import doubt_other_arm
 
 EXCITING = "excite_leader.csv"
 DESIGN_BUDGET = 150  # the last evaluations of a search for a motion would gain little
-# Another round follows while a joint's best is above this share of before.
-WANTING = 0.5
-# A round's trials end when the joints' best together have this share of the error from before, or gained less than so
-# much in so many trials.
-GOOD, LEAST_GAIN, PATIENCE = 0.04, 0.1, 3
 
 
-def is_enough(hoped: Sequence[float]) -> bool:
+def is_enough(hoped: Sequence[float], limits: RoundLimits = COMMISSIONING_LIMITS.rounds) -> bool:
     """Whether a round's trials end here; `hoped` is the error of the joints' best together after each of them, relative
     to before.
     """
-    stalls = len(hoped) > PATIENCE and hoped[-1] > (1.0 - LEAST_GAIN) * hoped[-1 - PATIENCE]
-    return stalls or hoped[-1] <= GOOD
+    patience = limits.trials_without_gain
+    stalls = len(hoped) > patience and hoped[-1] > (1.0 - limits.min_gain) * hoped[-1 - patience]
+    return stalls or hoped[-1] <= limits.good_error_share
 
 
 def commission(options: CommissioningRequest, report: NotedProgress | None = None) -> CommissioningResult:
@@ -100,7 +97,7 @@ class _Commissioning:
             with self._arm() as arm:
                 self._try(arm, learnt)
                 self.rounds.append(Round(number, learnt, tuple(self.trials.done[first:])))
-                if number == self.options.rounds or not self._is_wanting():
+                if number == self.options.rounds or not self._needs_another_round():
                     return self._confirm(arm)
             number += 1
             learnt = self._learn(number)
@@ -135,10 +132,10 @@ class _Commissioning:
             room = JointRange(limits.pose, limits.low, limits.high)
             if options.model is None:
                 with SideJob(lambda report: self._design(room, rig.before, report), self._report) as job:
-                    start.refuse_stuck(rig, book, room)
+                    start.refuse_stuck(rig, book, room, options.judging.motion)
                     job.result()
             else:
-                start.refuse_stuck(rig, book, room)
+                start.refuse_stuck(rig, book, room, options.judging.motion)
             save_parameters(book.path("before.toml"), rig.before)
             facts = {
                 "board": rig.before.board.key,
@@ -147,7 +144,7 @@ class _Commissioning:
             book.note("start", facts)
         self.before = before = load_parameters(book.path("before.toml")).for_board(find_board(facts["board"]))
         self.room = JointRange(*(np.array(values) for values in facts["room"]))
-        self.trials = Trials(book, check_motion(self.room), before)
+        self.trials = Trials(book, check_motion(self.room, options.judging.motion), before, options.judging)
 
     def _play_before(self, arm: Callable[[], ArmOnPort]) -> None:
         self.stage = "before"
@@ -158,7 +155,8 @@ class _Commissioning:
         for one, row, verdict in zip(self.joints, rows, first.verdicts, strict=True):
             one.add(row, verdict)
         if options.model is not None:
-            learn.refuse_other_arm(load_arm(options.model), str(options.model), first, trials.table)
+            most = options.judging.rounds.max_model_error
+            learn.refuse_other_arm(load_arm(options.model), str(options.model), first, trials.table, most)
 
     def _learn(self, number: int) -> learn.LearntController:
         """The model and controllers of a later round."""
@@ -184,8 +182,9 @@ class _Commissioning:
         """What a round learnt, with controllers that its model prefers on the check."""
         trials = self.trials
         model, learnt = tuner.validate(tuned, to_validate(trials))
+        before = trials.before
         trials.foresight = foresight = foresee(
-            model.arm, trials.table, trials.check, trials.before.traces, trials.before.measured
+            model.arm, trials.table, trials.check, before.traces, before.measured, trials.judging.steps
         )
         trials.others |= learnt.others
         self.on_model = CheckOnModel.of(model, trials, foresight, self.options.seed, self.options.threads)
@@ -240,7 +239,7 @@ class _Commissioning:
                     one.add(row, verdict)
             hoped.append(sum(one.best.verdict.share * one.best.verdict.value for one in self.joints))
             failed = np.array([verdict.known and not verdict.passed for verdict in trial.verdicts])
-            if not failed.any() or is_enough(hoped) or number == self.options.trials:
+            if not failed.any() or is_enough(hoped, self.options.judging.rounds) or number == self.options.trials:
                 break
             self.on_model = self.on_model.corrected(trial)
             passed = np.array([verdict.passed for verdict in trial.verdicts])
@@ -257,9 +256,9 @@ class _Commissioning:
             rows[joint] = one.best.row
         return rows
 
-    def _is_wanting(self) -> bool:
+    def _needs_another_round(self) -> bool:
         """Whether another round may help: a joint follows little better than before."""
-        return any(one.best.verdict.value > WANTING for one in self.joints)
+        return any(one.best.verdict.value > self.options.judging.rounds.max_error_share for one in self.joints)
 
     def _report(self, what: str, fraction: float, note: str = "") -> None:
         self.report(f"{self.stage}{self.trying}: {what}", fraction, note or self.tried)

@@ -23,6 +23,7 @@ from greywhale.arm.plants import columns, plant_row
 from greywhale.base.types import Controllers, Flags, Floats, NotedProgress
 from greywhale.commission.foresee import Foresight
 from greywhale.commission.judge import LED, RESTLESS, Limits
+from greywhale.commission.limits import SearchLimits
 from greywhale.commission.measures import Measures, measure
 from greywhale.commission.trials import Trial, Trials
 from greywhale.fuzzy.settings import GAIN_UNIT
@@ -39,28 +40,9 @@ from greywhale.tune.model import Model
 from greywhale.tune.search.lockstep import TURNS, LockstepSearch, SearchState
 from greywhale.tune.search.space import Space
 
-# The searches, each around the best so far: the width of the first pack, as a share of the box, and the sets to try.
-PACKS = ((0.05, 96), (0.05, 64), (0.03, 64), (0.02, 64))
-# What the worse arm has more of: loop gain, and lag of the potentiometers (s).
-GAIN, LAG_S = 1.3, 1e-3
-# The shares of the check's limits that a set on the model may take up, and of the error on steps and the ripple before.
-# An arm rattles 1.1 to 2.0 times as much as its model, and hisses 1.0 to 1.1 times.
-AIMS = {"unrest": 0.7, "rattle": 0.5, "chatter": 0.8, "error": 0.8}
-AIM_OF_BEFORE = 0.95
-# The share of the arm's limits after a trial, which tells by how much the model is wrong; the least part of an aim.
-SURER_AIM, LEAST_OF_AIM = 0.85, 0.1
-STILL_RAD = 0.002  # rms between steps, or what was there before: the check has few poses to hunt at
-OVERSHOOT = 15.0  # % of a step, at most, or as much as before
-# A joint that keeps more of its error than this (rms) is searched once more: the tuned fuzzy sets may be a dead end.
-POOR = 0.5
-PRICE = 2.0  # of being beyond a limit by all of it
-STEPS_PRICE = 20.0  # the same for steps: with 4 % more of them a joint does not pass, whatever the arm does
-HOST_LED = 0.6  # of the ripple under a leader's hand is there while a host leads, without the leader's noise
 NONE = np.zeros(JOINTS, dtype=bool)
-LEAST_KI = 30.0  # V/(rad s), where the search begins anew
 NO_LIMIT_V = np.full(JOINTS, np.inf)  # of ripple in the margins' rests: the check's is limited
 LEAST_RAD2 = 1e-9
-LOOSER = 1.0  # standard deviations of the worse arm's gears
 KI, KU, CE_TICKS = (CONTROLLER_COLUMNS.index(name) for name in ("ki", "ku_mv", "ce_ticks"))
 
 
@@ -83,14 +65,15 @@ class CheckOnModel:
     def of(cls, model: Model, trials: Trials, foresight: Foresight, seed: int, threads: int) -> CheckOnModel:
         """For the trials to come, after that of the controllers from before."""
         arm, table, before = with_usual_noise(model.arm), trials.table.with_raw(trials.others), trials.before
-        plants, running = np.vstack([plant_row(arm), loosen_gears(arm, LOOSER)]), controllers_of(table)[None]
+        wanted, running = trials.judging.search, controllers_of(table)[None]
+        plants = np.vstack([plant_row(arm), loosen_gears(arm, wanted.gear_sigmas)])
         margins = Margins(arm, table, plants, threads=threads, searching=True, seed=seed)
-        plants = np.vstack([plants[:1], _worsen(plants[1:])])
+        plants = np.vstack([plants[:1], _worsen(plants[1:], wanted)])
         led = LedModel(arm, table, before.traces)
         (traces,) = led.run(running, plants[:1])
         known = measure(traces, trials.check, table.supply_v)
         quiet_v = QUIET_SHARE * table.supply_v
-        limits, own = (Limits.of(one, NONE, quiet_v) for one in (before.measured, known))
+        limits, own = (Limits.of(one, NONE, quiet_v, trials.judging) for one in (before.measured, known))
         return cls(
             arm=led,
             plants=plants,
@@ -99,25 +82,30 @@ class CheckOnModel:
             margins=margins,
             limits=limits,
             aims=Limits(
-                unrest=AIMS["unrest"] * limits.unrest,
-                rattle=AIMS["rattle"] * limits.rattle,
-                chatter=AIMS["chatter"] * limits.chatter,
-                ripple=np.fmax(AIM_OF_BEFORE * known.ripple, HOST_LED * quiet_v),
-                error=AIMS["error"] * own.error,
+                unrest=wanted.unrest_aim * limits.unrest,
+                rattle=wanted.rattle_aim * limits.rattle,
+                chatter=wanted.chatter_aim * limits.chatter,
+                ripple=np.fmax(wanted.before_aim * known.ripple, wanted.host_ripple_share * quiet_v),
+                error=wanted.error_aim * own.error,
             ),
             led=known.error[LED].sum(axis=0),
-            swings=np.maximum(foresight.estimate(running, plants[1:])[1][:, 0], STILL_RAD),
-            overshoot=np.fmax(known.worst("overshoot"), OVERSHOOT),
+            swings=np.maximum(foresight.estimate(running, plants[1:])[1][:, 0], wanted.still_rad),
+            overshoot=np.fmax(known.worst("overshoot"), wanted.max_overshoot),
         )
+
+    @property
+    def wanted(self) -> SearchLimits:
+        return self.trials.judging.search
 
     def corrected(self, trial: Trial) -> CheckOnModel:
         """The same after a trial: what was too much on the arm, the model may show less of, by the same ratio."""
         (known,) = self._measured(trial.rows[None], 0)
         aims: dict[str, Floats] = {}
+        surer, least = self.wanted.correction_share, self.wanted.least_aim
         for name in (*RESTLESS, "error"):
             aim, shown = getattr(self.aims, name), getattr(trial.measured, name) / getattr(self.limits, name)
-            ratio = np.divide(getattr(known, name), shown, out=np.full_like(shown, np.inf), where=shown > SURER_AIM)
-            aims[name] = np.minimum(aim, np.maximum(SURER_AIM * ratio, LEAST_OF_AIM * aim))
+            ratio = np.divide(getattr(known, name), shown, out=np.full_like(shown, np.inf), where=shown > surer)
+            aims[name] = np.minimum(aim, np.maximum(surer * ratio, least * aim))
         aims["unrest"][:, [np.isinf(verdict.excess) for verdict in trial.verdicts]] /= 2.0
         return replace(self, aims=Limits(**aims))
 
@@ -130,16 +118,18 @@ class CheckOnModel:
         """The error in what a hand leads, rms as a share of that before, and what the rest costs, (n, 4) each."""
         unrest = self.margins.unrest(controllers)
         near = {name: found for name, found in unrest.items() if name not in (TWICE, TEETH)}
-        prices = penalty(near, NO_LIMIT_V)
+        prices, wanted = penalty(near, NO_LIMIT_V), self.wanted
         ratios, restless = self.foresight.estimate(controllers, self.plants[1:])
-        prices += PRICE * np.maximum(restless / self.swings[:, None] - 1.0, 0.0).max(axis=0)
-        prices += STEPS_PRICE * np.where(self.foresight.believed, np.maximum(ratios / AIM_OF_BEFORE - 1.0, 0.0), 0.0)
+        prices += wanted.price * np.maximum(restless / self.swings[:, None] - 1.0, 0.0).max(axis=0)
+        worse = np.maximum(ratios / wanted.before_aim - 1.0, 0.0)
+        prices += wanted.steps_price * np.where(self.foresight.believed, worse, 0.0)
         errors = np.empty_like(prices)
-        known, worse = self._measured(controllers, 0), self._measured(controllers, 1, only_unrest=True)
-        for row, (one, other) in enumerate(zip(known, worse, strict=True)):
+        known, unsteady = self._measured(controllers, 0), self._measured(controllers, 1, only_unrest=True)
+        for row, (one, other) in enumerate(zip(known, unsteady, strict=True)):
             errors[row] = np.sqrt(one.error[LED].sum(axis=0) / np.maximum(self.led, LEAST_RAD2))
-            prices[row] += PRICE * (self._beyond(one, (*RESTLESS, "error")) + self._beyond(other, ["unrest"]))
-            prices[row] += PRICE * np.maximum(np.nan_to_num(one.worst("overshoot")) / self.overshoot - 1.0, 0.0)
+            prices[row] += wanted.price * (self._beyond(one, (*RESTLESS, "error")) + self._beyond(other, ["unrest"]))
+            overshoot = np.nan_to_num(one.worst("overshoot"))
+            prices[row] += wanted.price * np.maximum(overshoot / self.overshoot - 1.0, 0.0)
         return errors, prices
 
     def _measured(self, controllers: Controllers, plant: int, *, only_unrest: bool = False) -> Iterator[Measures]:
@@ -159,10 +149,10 @@ class CheckOnModel:
         """The best found around controllers (4, 13), all joints together but for those that `vary` (4,) leaves out."""
         before = controllers_of(self.trials.table)
         best = self._search_around(begin, vary, seed, report)
-        poor = vary & (self._judged(best[None])[0][0] > POOR)
+        poor = vary & (self._judged(best[None])[0][0] > self.wanted.retry_error)
         if poor.any():
             again = best.copy()
-            again[poor] = _with_sets_of(before, begin)[poor]
+            again[poor] = _with_sets_of(before, begin, self.wanted.least_ki)[poor]
             best = self._best_together(best, self._search_around(again, vary, seed, report, "searching once more"))
         idle = list(unused(self.trials.table.joints_in_use))
         best[idle] = before[idle]
@@ -172,14 +162,14 @@ class CheckOnModel:
         self, begin: Controllers, vary: Flags, seed: int, report: NotedProgress, what: str = "searching on the model"
     ) -> Controllers:
         table, best = self.trials.table, begin.copy()
-        whole = sum(sets for _, sets in PACKS)
+        whole = sum(sets for _, sets in self.wanted.packs)
 
         def costs(controllers: Controllers) -> Floats:
             return self.costs(np.where(vary[:, None], controllers, begin))
 
         found = SearchState.nothing(begin)
         search = LockstepSearch(costs, found, tick=lambda now: report(what, min(1.0, now.evaluations / whole)))
-        for number, (sigma, sets) in enumerate(PACKS):
+        for number, (sigma, sets) in enumerate(self.wanted.packs):
             if number:
                 search.try_again("check")
             search.run(
@@ -208,16 +198,16 @@ class CheckOnModel:
         return sets[int(np.argmin(self.costs(np.stack(sets)).sum(axis=1)))].copy()
 
 
-def _with_sets_of(before: Controllers, tuned: Controllers) -> Controllers:
+def _with_sets_of(before: Controllers, tuned: Controllers, least_ki: float) -> Controllers:
     """The controllers from before with the voltage and the derivative of the tuned ones, and some integral part."""
     rows = before.copy()
     rows[:, [KU, CE_TICKS]] = tuned[:, [KU, CE_TICKS]]
-    rows[:, KI] = np.maximum(rows[:, KI], LEAST_KI * GAIN_UNIT)
+    rows[:, KI] = np.maximum(rows[:, KI], least_ki * GAIN_UNIT)
     return rows
 
 
-def _worsen(plant: Floats) -> Floats:
+def _worsen(plant: Floats, limits: SearchLimits) -> Floats:
     """An arm on which a controller comes to rest less easily."""
-    worse = with_gain(plant, GAIN)
-    worse[:, columns("pot_lag")] += LAG_S
+    worse = with_gain(plant, limits.worse_gain)
+    worse[:, columns("pot_lag")] += limits.worse_lag_s
     return worse

@@ -9,35 +9,36 @@ from greywhale.base.errors import UserError
 from greywhale.base.types import Floats
 from greywhale.commission.arm_on_port import ArmOnPort
 from greywhale.commission.journal import CommissioningJournal
-from greywhale.commission.motions import FIRST_RAD, JointRange, first_motion
+from greywhale.commission.limits import COMMISSIONING_LIMITS, MotionLimits
+from greywhale.commission.motions import JointRange, first_motion
 from greywhale.files.log import Log
 from greywhale.protocol.firmware import JOINTS
 
-# The little first motion, and a larger one for joints that friction held.
-FIRST_SIZES = (FIRST_RAD, 0.4)
-# A joint that went less than this share of its way, or the other way, does not move freely.
-LEAST_SHARE = 0.25
 
-
-def refuse_stuck(rig: ArmOnPort, book: CommissioningJournal, room: JointRange) -> None:
+def refuse_stuck(
+    rig: ArmOnPort,
+    book: CommissioningJournal,
+    room: JointRange,
+    limits: MotionLimits = COMMISSIONING_LIMITS.motion,
+) -> None:
     """Move every joint a little, then, where friction held one, a little more. Refuse an arm that does not follow."""
     if book.get("first motion") is not None:
         return
     stuck: list[int] = []
-    for number, size in enumerate(FIRST_SIZES, 1):
-        played = rig.play(first_motion(room, size), book.path(f"first-{number}.csv"), rig.before, patient=True)
+    for number, size in enumerate((limits.first_rad, limits.first_again_rad), 1):
+        played = rig.play(first_motion(room, size, limits), book.path(f"first-{number}.csv"), rig.before, patient=True)
         if played.stopped:
             raise UserError(f"the arm cannot be commissioned: {played.stopped} in the little first motion.")
         shares = shares_moved(played.log)
-        _refuse_backwards(shares)
-        stuck = [joint for joint in rig.before.joints_in_use if shares[joint] < LEAST_SHARE]
+        _refuse_backwards(shares, limits.least_way_share)
+        stuck = [joint for joint in rig.before.joints_in_use if shares[joint] < limits.least_way_share]
         if not stuck:
             book.note("first motion", {"size_rad": size, "shares_moved": [round(float(share), 3) for share in shares]})
             return
     named = " and ".join(f"joint {joint} ({JOINT_NAMES[joint]})" for joint in stuck)
     raise UserError(
-        f"{named} did not move when led by {FIRST_SIZES[-1]:g} rad; see that the arm is free, its motors have power, "
-        "and each potentiometer is on its own joint."
+        f"{named} did not move when led by {limits.first_again_rad:g} rad; see that the arm is free, its motors have "
+        "power, and each potentiometer is on its own joint."
     )
 
 
@@ -55,9 +56,9 @@ def shares_moved(log: Log) -> Floats:
     return shares
 
 
-def _refuse_backwards(shares: Floats) -> None:
+def _refuse_backwards(shares: Floats, least_share: float) -> None:
     wrong = int(np.argmin(shares))
-    if shares[wrong] < -LEAST_SHARE:
+    if shares[wrong] < -least_share:
         raise UserError(
             f"joint {wrong} ({JOINT_NAMES[wrong]}) moves away from its leader; swap its motor's wires, or set "
             f"joint{wrong}.motor_sign."

@@ -13,6 +13,7 @@ from greywhale.commission.arm_on_port import ArmOnPort, PlayedMotion
 from greywhale.commission.foresee import Foresight
 from greywhale.commission.journal import AnewError, CommissioningJournal
 from greywhale.commission.judge import Limits, TrialVerdict, judge
+from greywhale.commission.limits import COMMISSIONING_LIMITS, CommissioningLimits
 from greywhale.commission.measures import Measures, PartFacts, measure, traces_of
 from greywhale.commission.motions import Check
 from greywhale.files.log import read_evidence
@@ -89,8 +90,15 @@ class Trial:
 class Trials:
     """All trials so far. The first is that of the controllers from before, against which the others are judged."""
 
-    def __init__(self, book: CommissioningJournal, check: Check, before: ParameterTable) -> None:
+    def __init__(
+        self,
+        book: CommissioningJournal,
+        check: Check,
+        before: ParameterTable,
+        judging: CommissioningLimits = COMMISSIONING_LIMITS,
+    ) -> None:
         self.book = book
+        self.judging = judging
         self.check = check
         self.table = before
         self.done: list[Trial] = []
@@ -160,5 +168,6 @@ class Trials:
         guilty = [played.stopped if joint == played.joint else "" for joint in range(JOINTS)]
         kept = (rows == controllers_of(self.table)).all(axis=1)
         foreseen = ("",) * JOINTS if self.foresight is None else self.foresight.clauses(rows)
-        verdicts = judge(measured, before, Limits.of(before, kept, QUIET_SHARE * self.table.supply_v), guilty, foreseen)
+        limits = Limits.of(before, kept, QUIET_SHARE * self.table.supply_v, self.judging)
+        verdicts = judge(measured, before, limits, guilty, foreseen, self.judging)
         return Trial(name, rows.copy(), self.table_of(rows), path, played.stopped, measured, verdicts, traces)

@@ -1,0 +1,196 @@
+"""The limits of a commissioning: motions, rounds, what a trial may show, and what a search on the model aims at."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from greywhale.base.limits import MEASURED_IN_TIME, MEASURED_IN_TRIALS, MEASURED_ON_ARMS, limit
+from greywhale.measure.limits import SWING_LIMITS, SwingLimits
+
+
+@dataclass(frozen=True)
+class MotionLimits:
+    """The little first motion, and the five parts of the check."""
+
+    speed_share: float = limit(0.9, "of what a host can lead", "no move is quicker: a tenth to spare")
+    edge_s: float = limit(0.04, "s", "a hand cannot jump")
+    first_rad: float = limit(0.15, "rad", "the little first motion is no larger: nothing is known of the arm yet")
+    first_again_rad: float = limit(0.4, "rad", "that of joints which friction held in the first")
+    first_edge_s: float = limit(0.5, "s", "an edge of the first motion is slow")
+    first_hold_s: float = limit(0.7, "s", "and each of its stops long enough to arrive")
+    least_way_share: float = limit(
+        0.25, "of the leader's way", "a joint that went less, or the other way, does not move freely"
+    )
+    small_rad: tuple[float, ...] = limit((0.1, 0.0), "rad", "stops of the small moves, which come first")
+    move_shares: tuple[float, ...] = limit(
+        (0.9, -0.6, 0.3), "of the room", "stops of the moves; each joint begins at another one"
+    )
+    hold_s: float = limit(1.3, "s", "a stop of the moves")
+    rest_s: float = limit(2.2, "s", "their last one: long enough for a joint that breaks loose late")
+    reaches_s: float = limit(5.5, "s", "of reaches as a hand makes them")
+    reaches_share: float = limit(0.8, "of the room", "how far the reaches go")
+    slow_s: float = limit(4.0, "s", "one slow swing to both sides, in which a joint rattles most easily")
+    slow_share: float = limit(0.35, "of the room", "how far that swing goes")
+    pause_s: float = limit(0.3, "s", "a rest between two parts")
+    still_shares: tuple[float, ...] = limit(
+        (0.6, -0.5, 0.0), "of the room", "stops of every second joint while the others hold still"
+    )
+    still_edge_s: float = limit(0.4, "s", "an edge meanwhile")
+    still_hold_s: float = limit(0.4, "s", "a stop meanwhile")
+
+
+@dataclass(frozen=True)
+class RoundLimits:
+    """When a round, or its trials, end."""
+
+    max_error_share: float = limit(
+        0.5, "of the error before", "another round follows while a joint's best is above this"
+    )
+    good_error_share: float = limit(
+        0.04, "of the error before", "a round's trials end when the joints' best together are below this"
+    )
+    min_gain: float = limit(0.1, "of the error", "or when they gained less than this")
+    trials_without_gain: int = limit(3, "trials", "in so many trials")
+    max_confirmations: int = limit(12, "trials", "so many combinations of the joints' best are tried at the end")
+    max_model_error: float = limit(
+        0.5,
+        "of the tracking error (mean squares)",
+        "a given model is of another arm if it predicts a joint's way no better than this",
+    )
+
+
+@dataclass(frozen=True)
+class EvidenceLimits:
+    """What earlier trials tell a later round."""
+
+    fitted_trials: int = limit(2, "trials", "so many logs of trials are fitted, besides the excitation")
+    gaps_rad: tuple[float, ...] = limit(
+        (0.002, 0.005, 0.01, 0.02),
+        "rad to either side",
+        "play or gaps that may be missing in a model under which a joint rests and on the arm does not; mildest first",
+    )
+    lags_s: tuple[float, ...] = limit((1e-3, 2e-3, 4e-3), "s", "lag of a potentiometer that may be missing in it")
+    gains: tuple[float, ...] = limit((1.4, 2.0, 2.8), "times", "loop gain that may be missing in it")
+    hunting_end_s: float = limit(0.8, "s", "the end of a log that hunting ended, which shows how it hunts")
+    shown_share: float = limit(0.5, "of the measured unrest", "a plant shows the unrest from this on")
+
+
+@dataclass(frozen=True)
+class StepLimits:
+    """What a round's model says about steps, which no check can have."""
+
+    max_error_share: float = limit(
+        0.99,
+        "of the error before",
+        "a joint may keep so much on steps; the rest of the way to 1 is the model's own error",
+        MEASURED_ON_ARMS,
+    )
+    believed_share: float = limit(
+        0.1, "of the error", "a model is believed that predicts the error before, in the check's moves, to within this"
+    )
+
+
+@dataclass(frozen=True)
+class JudgeLimits:
+    """What a joint may do in a trial; how much it may swing is in `measure/limits.py`."""
+
+    bearable_price: float = limit(
+        2.0,
+        "times the error",
+        "what swings as much as can be borne at most, must follow with half the error of one that passes",
+    )
+    repeat_rad2: float = limit(
+        1e-6,
+        "rad²",
+        "two recordings with the same controllers differ by so much (1 mrad rms), besides a share",
+        MEASURED_IN_TRIALS,
+    )
+    unseen_rad: float = limit(
+        0.002,
+        "rad rms",
+        "where a joint hardly moves, friction and play make its error: so much more nobody sees",
+    )
+    unseen_holding_rad: float = limit(
+        0.006,
+        "rad rms",
+        "while it holds still it stays where friction left it: one controller 1 mrad away from its leader in one "
+        "trial, 6 in another",
+        MEASURED_IN_TRIALS,
+    )
+    kept_share: float = limit(
+        0.1, "of the error before", "a joint that keeps its controller feels its neighbours' quicker moves"
+    )
+    kept_growth: float = limit(2.0, "times before", "and how stiffly they rest: its unrest may grow so much")
+    pushed_rad: float = limit(
+        0.003,
+        "rad rms",
+        "while a joint holds still, quicker neighbours push it: less unrest than this counts after its own moves only",
+    )
+
+
+@dataclass(frozen=True)
+class SearchLimits:
+    """What a set of controllers may show on the round's model, before the arm moves."""
+
+    packs: tuple[tuple[float, int], ...] = limit(
+        ((0.05, 96), (0.05, 64), (0.03, 64), (0.02, 64)),
+        "of the box, and sets",
+        "the searches, each around the best so far: the width of the first pack, and the sets to try",
+        MEASURED_IN_TIME,
+    )
+    worse_gain: float = limit(1.3, "times", "the worse arm has so much loop gain")
+    worse_lag_s: float = limit(1e-3, "s", "and so much more lag of the potentiometers")
+    gear_sigmas: float = limit(1.0, "standard deviations", "and its gears are looser by so many")
+    unrest_aim: float = limit(0.7, "of the check's limit", "the unrest that a set on the model may show")
+    rattle_aim: float = limit(
+        0.5, "of the check's limit", "the same of rattling: an arm rattles 1.1 to 2.0 times its model", MEASURED_ON_ARMS
+    )
+    chatter_aim: float = limit(0.8, "of the check's limit", "the same of chatter")
+    error_aim: float = limit(0.8, "of the check's limit", "the same of the error")
+    before_aim: float = limit(
+        0.95,
+        "of before",
+        "the error on steps and the ripple that it may show: an arm hisses 1.0 to 1.1 times its model",
+        MEASURED_ON_ARMS,
+    )
+    correction_share: float = limit(
+        0.85, "of the arm's limit", "what a trial shows beyond this, the model may show less of, by the same ratio"
+    )
+    least_aim: float = limit(0.1, "of an aim", "so much of an aim stays whatever the trials show")
+    still_rad: float = limit(
+        0.002,
+        "rad rms",
+        "the unrest between steps, or what was there before: the check has few poses to hunt at",
+    )
+    max_overshoot: float = limit(15.0, "% of a step", "the overshoot in moves, or as much as before")
+    retry_error: float = limit(
+        0.5,
+        "of the error before (rms)",
+        "a joint that keeps more is searched once more: the tuned fuzzy sets may be a dead end",
+    )
+    price: float = limit(2.0, "times the error before", "of being beyond a limit by all of it")
+    steps_price: float = limit(
+        20.0,
+        "times the error before",
+        "the same for steps: with 4 % more of them a joint does not pass, whatever the arm does",
+    )
+    host_ripple_share: float = limit(
+        0.6, "of the ripple under a leader's hand", "is there while a host leads, without the leader's noise"
+    )
+    least_ki: float = limit(30.0, "V/(rad s)", "where the search begins anew, it has some integral part")
+
+
+@dataclass(frozen=True)
+class CommissioningLimits:
+    """All limits of a commissioning; those of swings are the adaptation's too."""
+
+    motion: MotionLimits = MotionLimits()
+    rounds: RoundLimits = RoundLimits()
+    evidence: EvidenceLimits = EvidenceLimits()
+    steps: StepLimits = StepLimits()
+    judge: JudgeLimits = JudgeLimits()
+    search: SearchLimits = SearchLimits()
+    swings: SwingLimits = SWING_LIMITS
+
+
+COMMISSIONING_LIMITS = CommissioningLimits()
