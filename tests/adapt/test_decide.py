@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -105,7 +106,7 @@ def test_a_worse_set_goes_back_within_seconds(adaptation: Adaptation, work: Work
     assert adaptation.wish.table == adaptation.kept == TABLE
 
 
-def deciding(**other: float) -> AdaptationLimits:
+def deciding(**other: Any) -> AdaptationLimits:
     """The usual limits, but for some of the decisions'."""
     return replace(ADAPTATION_LIMITS, decisions=replace(ADAPTATION_LIMITS.decisions, **other))
 

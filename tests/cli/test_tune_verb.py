@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 import itertools
 import json
-from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +16,7 @@ from greywhale.cli import tune as verb
 from greywhale.files import controller
 from greywhale.loop import default_controller
 from greywhale.protocol import schema
-from greywhale.tune import tune
+from greywhale.tune.limits import WITHOUT_FLOORS
 from tests.board.fake_board import FakeBoard
 from tests.support.tuning import judge_nothing, shorten
 from tests.tune.models import log_facts, write_model
@@ -48,7 +47,7 @@ def no_work(monkeypatch: pytest.MonkeyPatch) -> None:
 def no_floors(monkeypatch: pytest.MonkeyPatch) -> None:
     """The least possible errors take seconds and are tested with the floor."""
     shorten(monkeypatch)
-    monkeypatch.setattr(verb, "tune", partial(tune, floors=False))
+    monkeypatch.setattr(verb, "TUNING_LIMITS", WITHOUT_FLOORS)
 
 
 # --- refusals -------------------------------------------------------------------------------------------------------

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -44,7 +45,7 @@ class Whole:
     outcome: CommissioningResult
 
 
-def ending(**other: float) -> CommissioningLimits:
+def ending(**other: Any) -> CommissioningLimits:
     """The usual limits, but for some of those at which a round ends."""
     return replace(COMMISSIONING_LIMITS, rounds=replace(COMMISSIONING_LIMITS.rounds, **other))
 

@@ -177,8 +177,8 @@ def test_a_search_reads_no_limits_but_those_that_it_was_handed(rig: SimulatedRig
     with CommissioningJournal(tmp_path / "trials", {}, resume=False) as journal, reads_of(COMMISSIONING_LIMITS) as read:
         trials = Trials(journal, check_motion(ROOM, own.motion), rig.before, own)
         before = trials.play_before(rig)  # type: ignore[arg-type]
-        foresight = foresee(default_arm(), trials.table, trials.check, before.traces, before.measured, own.steps)
-        model = load_model(write_model(tmp_path / "model.toml"), samples=1, force=True)
+        foresight = foresee(default_arm(), trials.table, trials.check, before.traces, before.measured, own)
+        model = load_model(write_model(tmp_path / "model.toml"), samples=1, force=True, judging=own.tuning)
         check = CheckOnModel.of(model, trials, foresight, seed=0, threads=1).corrected(before)
         check.search(controllers_of(trials.table), ALL, 0, show_no_progress)
     assert read == set()

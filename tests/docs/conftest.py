@@ -33,6 +33,7 @@ from greywhale.loop import human_reaches
 from greywhale.protocol.schema import HelloReply
 from greywhale.protocol.table import ParameterTable
 from greywhale.tune import tune
+from greywhale.tune.limits import WITHOUT_FLOORS
 from greywhale.tune.model import load_model
 from greywhale_paper import run as reproduce_run
 from greywhale_paper.pages import report as reproduce_report
@@ -114,7 +115,9 @@ def identified(yours: Path) -> Once:
 def tuned(yours: Path) -> Once:
     """Controllers after four tries, without the least possible errors, which take longest."""
     return Once(
-        lambda: tune(load_model(yours / "model.toml", samples=1), method="random", budget=4, floors=False, threads=1)
+        lambda: tune(
+            load_model(yours / "model.toml", samples=1), method="random", budget=4, judging=WITHOUT_FLOORS, threads=1
+        )
     )
 
 

@@ -5,7 +5,7 @@ what is possible is worked out once for all tests.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import partial
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -14,9 +14,11 @@ from greywhale.identify import bootstrap, sampled_plants
 from greywhale.loop import human_reaches
 from greywhale.tune import default, model
 from greywhale.tune.judge import held_out
-from greywhale.tune.judge.margins import REST_S, Margins
+from greywhale.tune.judge.margins import Margins
+from greywhale.tune.limits import TuningLimits
 from greywhale.tune.possible import scale_of
-from greywhale.tune.search import lockstep, training
+from greywhale.tune.request import TuningRequest
+from greywhale.tune.search import lockstep
 from greywhale.tune.search.objective import ErrorScale
 from greywhale.tune.search.training import TrainingMotion
 
@@ -25,7 +27,11 @@ _known: dict[bytes, ErrorScale] = {}
 
 def shorten(patch: pytest.MonkeyPatch) -> None:
     def shared(
-        drills: Sequence[TrainingMotion], plants: np.ndarray, before: np.ndarray, threads: int = 0
+        drills: Sequence[TrainingMotion],
+        plants: np.ndarray,
+        before: np.ndarray,
+        threads: int,
+        judging: TuningLimits,
     ) -> ErrorScale:
         arrays = [
             plants,
@@ -34,18 +40,28 @@ def shorten(patch: pytest.MonkeyPatch) -> None:
         ]
         key = b"".join(array.tobytes() for array in arrays)
         if key not in _known:
-            _known[key] = scale_of(drills, plants, before, threads)
+            _known[key] = scale_of(drills, plants, before, threads, judging)
         return _known[key]
 
     patch.setattr(bootstrap, "LOGS", 1)
     patch.setattr(lockstep, "KEPT", 2)  # two candidates a joint are enough to try the last judgement,
-    patch.setattr(default, "CALMER", default.CALMER[::4])  # and of those with less voltage or integral three
-    patch.setattr(training, "moves", partial(training.moves, hold_s=0.6))
-    patch.setattr(training, "HUMAN_S", 3.0)
-    patch.setattr(training, "SLOW_S", 4.0)
+    usual = default.DefaultMethod.__init__
+    patch.setattr(
+        default.DefaultMethod, "__init__", lambda self, task: usual(self, replace(task, judging=short_of(task)))
+    )
     patch.setattr(default, "scale_of", shared)
-    patch.setattr(default, "REST_LONG_S", REST_S)
     patch.setattr(held_out, "human_reaches", lambda seed, seconds: human_reaches(seed, 5.0))
+
+
+def short_of(task: TuningRequest) -> TuningLimits:
+    """Its limits with short motions and rests, and three candidates with less voltage or integral."""
+    limits = task.judging
+    return replace(
+        limits,
+        training=replace(limits.training, hold_s=0.6, human_s=3.0, slow_s=4.0),
+        margins=replace(limits.margins, long_rest_s=limits.margins.rest_s),
+        choice=replace(limits.choice, gain_reductions=limits.choice.gain_reductions[::4]),
+    )
 
 
 def judge_nothing(patch: pytest.MonkeyPatch) -> None:

@@ -18,7 +18,8 @@ from greywhale.files.model import to_toml
 from greywhale.identify import loosen_gears, sampled_plants
 from greywhale.loop import default_controller, plant_row
 from greywhale.protocol.table import ParameterTable
-from greywhale.tune.model import LOOSER, load_model
+from greywhale.tune.limits import TUNING_LIMITS
+from greywhale.tune.model import load_model
 from tests.tune.models import SEARCHED, facts_of, log_facts, write_model
 
 
@@ -62,7 +63,7 @@ def test_plants_are_drawn_from_the_covariance_and_follow_from_the_seed(tmp_path:
 def test_the_second_plant_has_looser_gears(tmp_path: Path) -> None:
     path = write_model(tmp_path / "model.toml", searched=(*SEARCHED, "gap", "teeth"))
     loose = load_model(path).plants[1]
-    np.testing.assert_array_equal(loose, loosen_gears(load_arm(path), LOOSER))
+    np.testing.assert_array_equal(loose, loosen_gears(load_arm(path), TUNING_LIMITS.model.gear_sigmas))
     assert (loose[columns("half_gap")] > plant_row(load_arm(path))[columns("half_gap")]).all()
 
 

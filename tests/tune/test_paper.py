@@ -8,6 +8,7 @@ import pytest
 from greywhale.arm.plants import column
 from greywhale.loop import Experiment, default_controller, multi_steps, steps
 from greywhale.tune import TuningResult, tune
+from greywhale.tune.limits import WITHOUT_FLOORS
 from greywhale.tune.model import Model, load_model
 from greywhale.tune.paper import AGENTS, BUDGET, ITERATIONS, Loops, move_one_joint
 
@@ -22,7 +23,7 @@ def model() -> Model:
 
 @pytest.fixture(scope="module")
 def tuned(model: Model) -> TuningResult:
-    return tune(model, method="paper", strategy="mf", floors=False)
+    return tune(model, method="paper", strategy="mf", judging=WITHOUT_FLOORS)
 
 
 def test_ten_agents_move_thirty_times_at_20_ms_and_the_models_supply(tuned: TuningResult, model: Model) -> None:
@@ -71,7 +72,7 @@ def test_only_sets_change_and_none_is_too_narrow(tuned: TuningResult) -> None:
 def test_factors_are_tuned_at_the_20_volts_of_table_8(model: Model) -> None:
     for strategy in ("sf", "both"):
         assert Loops(model, strategy, BEFORE, 1).plant[column("supply")] == 20.0
-    outcome = tune(model, method="paper", strategy="sf", budget=20, floors=False)
+    outcome = tune(model, method="paper", strategy="sf", budget=20, judging=WITHOUT_FLOORS)
     assert outcome.supply_v == 20.0
     assert outcome.evaluations == 20
     assert outcome.after[:, 11].max() <= 20_000

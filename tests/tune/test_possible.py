@@ -9,7 +9,8 @@ from greywhale.arm.plants import columns
 from greywhale.files.arm import default_arm
 from greywhale.loop import default_controller, plant_row
 from greywhale.protocol.table import ParameterTable
-from greywhale.tune.possible import LEAST_RAD, LEAST_SHARE, lateness_s, scale_of
+from greywhale.tune.limits import TUNING_LIMITS
+from greywhale.tune.possible import lateness_s, scale_of
 from greywhale.tune.search.objective import ErrorScale, follow
 from greywhale.tune.search.training import TrainingMotion, training_motions
 
@@ -57,7 +58,8 @@ def test_a_joint_at_its_floor_has_room_all_the_same(
 
     monkeypatch.setattr("greywhale.tune.possible.follow", ideal)
     narrow = scale_of(one, PLANTS, BEFORE)
-    np.testing.assert_allclose(narrow.room, np.maximum(LEAST_SHARE * floor, LEAST_RAD))
+    cost = TUNING_LIMITS.cost
+    np.testing.assert_allclose(narrow.room, np.maximum(cost.least_room_share * floor, cost.least_room_rad))
 
 
 def test_a_board_hears_late_of_its_leader() -> None:

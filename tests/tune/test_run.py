@@ -17,16 +17,19 @@ from greywhale.base.types import show_no_progress
 from greywhale.loop import plant_row
 from greywhale.optimise import METHODS as OPTIMISERS
 from greywhale.tune import METHODS, TuningResult, check_request, default, tune
-from greywhale.tune.default import CALMER, KU, DefaultMethod
+from greywhale.tune.default import KU, DefaultMethod
 from greywhale.tune.judge.margins import TEETH
 from greywhale.tune.judge.standard import Standard
+from greywhale.tune.limits import BY_THE_ARM, TUNING_LIMITS, WITHOUT_FLOORS
 from greywhale.tune.model import Model, load_model
 from greywhale.tune.request import TuningRequest
 from greywhale.tune.search.lockstep import KEPT
 from greywhale.tune.search.objective import Objective
 from tests.support.arms import make_arm
 from tests.support.interrupts import ctrl_c_at
+from tests.support.limits import copy_of, reads_of
 from tests.support.tuning import judge_nothing, shorten
+from tests.tune.models import write_model
 
 BUDGET = 60
 
@@ -58,7 +61,8 @@ def unjudged(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def run(model: Model, **options: Any) -> TuningResult:
-    return tune(model, **({"budget": BUDGET, "floors": False} | options))
+    given: dict[str, Any] = {"budget": BUDGET, "judging": WITHOUT_FLOORS}
+    return tune(model, **given | options)
 
 
 @pytest.fixture(scope="module")
@@ -174,7 +178,7 @@ def test_a_joint_whose_best_would_shake_its_gear_gets_less_voltage(
     monkeypatch.setattr(DefaultMethod, "judge_costs", judge_costs)
     outcome = run(sure)
     assert outcome.after[1, KU] not in searched
-    assert outcome.after[1, KU] in [round(share * searched[0]) for share, _ in CALMER]
+    assert outcome.after[1, KU] in [round(share * searched[0]) for share, _ in TUNING_LIMITS.choice.gain_reductions]
 
 
 def test_a_joint_whose_candidates_all_fall_short_is_searched_once_more(
@@ -235,13 +239,14 @@ def test_of_the_neighbours_of_a_kept_joint_only_the_one_that_disturbs_it_steps_b
 def test_where_the_arm_itself_will_judge_unrest_on_the_model_counts_less(
     sure: Model, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(default, "penalty", lambda unrest, quiet_v: np.ones((1, 4)))
+    monkeypatch.setattr(default, "penalty", lambda unrest, quiet_v, limits: np.ones((1, 4)))
     monkeypatch.setattr(Standard, "falls_short", lambda self, unrest, kept: np.ones((1, 4), dtype=bool))
-    task = TuningRequest(sure, "both", "default", 1, 0, 1, sure.controllers, {}, show_no_progress, floors=False)
+    task = TuningRequest(sure, "both", "default", 1, 0, 1, sure.controllers, {}, show_no_progress)
     rows = sure.controllers[None]
     usual = DefaultMethod(task).judge_costs(rows)
-    on_trial = DefaultMethod(replace(task, on_trial=True)).judge_costs(rows)
-    assert usual - on_trial == pytest.approx(default.UNFIT + 1.0 - default.ON_TRIAL)
+    on_trial = DefaultMethod(replace(task, judging=BY_THE_ARM)).judge_costs(rows)
+    limits = TUNING_LIMITS.choice
+    assert usual - on_trial == pytest.approx(limits.unfit_cost + 1.0 - limits.unrest_weight_on_arm)
 
 
 def test_silent_potentiometers_get_the_noise_of_ordinary_ones() -> None:
@@ -271,3 +276,35 @@ def test_a_ki_that_the_period_forbids_is_bad_usage(model: Model) -> None:
     slow = replace(model, table=model.table.with_raw({"period_ms": 20}))
     with pytest.raises(UserError, match="Ki reach to 500, .* 20 ms .* at most 204"):
         run(slow, bounds={"Ki": (1.0, 500.0)})
+
+
+@pytest.mark.slow
+def test_a_tuning_reads_no_limits_but_those_that_it_was_handed(tmp_path: Path) -> None:
+    """From the model's checks to the held-out motions; it says what differs where it is a journal's."""
+    own = copy_of(TUNING_LIMITS)
+    path = write_model(tmp_path / "model.toml")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(TuningRequest, "facts", lambda request: {})
+        with reads_of(TUNING_LIMITS) as read:
+            model = load_model(path, samples=1, force=True, judging=own)
+            tune(model, budget=12, threads=1, judging=own)
+            tune(model, budget=12, threads=1, judging=replace(own, by_the_arm=True, floors=False))
+    assert read == set()
+
+
+def test_other_limits_are_another_tuning(sure: Model) -> None:
+    task = TuningRequest(sure, "both", "default", 1, 0, 1, sure.controllers, {}, show_no_progress)
+    assert "judging" not in replace(task, judging=BY_THE_ARM).facts()
+    dearer = replace(TUNING_LIMITS, quiet=2.0, cost=replace(TUNING_LIMITS.cost, effort_weight=0.5))
+    assert replace(task, judging=dearer).facts()["judging"] == {"cost.effort_weight": 0.5}
+    assert replace(task, judging=dearer).facts()["quiet"] == 2.0
+
+
+def test_what_voltage_costs_can_be_changed(sure: Model) -> None:
+    """An ablation is a loop: no code is patched."""
+    costs = []
+    for weight in (0.0, 0.5):
+        dearer = replace(TUNING_LIMITS, cost=replace(TUNING_LIMITS.cost, effort_weight=weight))
+        task = TuningRequest(sure, "both", "default", 1, 0, 1, sure.controllers, {}, show_no_progress, dearer)
+        costs.append(DefaultMethod(task).costs(sure.controllers[None])[0])
+    assert (costs[1] > costs[0]).all()

@@ -12,8 +12,9 @@ from greywhale.arm.body import Body
 from greywhale.arm.plants import plant_row
 from greywhale.files.arm import load_arm
 from greywhale.protocol.table import ParameterTable
+from greywhale.tune.limits import TUNING_LIMITS
 from greywhale.tune.model import load_model
-from greywhale.tune.travel import LEAST_MARGIN, LEAST_V, MOST_OF_SUPPLY, Travel, travel_of
+from greywhale.tune.travel import Travel, travel_of
 from tests.support.arms import make_arm
 from tests.tune.models import write_model
 
@@ -35,7 +36,7 @@ def test_a_joint_must_move_with_a_margin_on_its_friction(tmp_path: Path) -> None
     found = travel(tmp_path, arm, deviation=0.001)
     for joint, volts in enumerate(found.breakaway_v):
         friction = arm.joint[joint].friction.breakaway / arm.actuator(joint).torque_per_volt
-        assert volts >= max((1 + LEAST_MARGIN) * friction, LEAST_V) * 0.999
+        assert volts >= max((1 + TUNING_LIMITS.travel.least_margin) * friction, TUNING_LIMITS.travel.least_v) * 0.999
     assert found.note == ""
 
 
@@ -59,7 +60,7 @@ def test_the_gravity_terms_hold_the_arm_in_any_pose(tmp_path: Path) -> None:
 
 def test_what_the_supply_cannot_give_is_told(tmp_path: Path) -> None:
     found = travel(tmp_path, with_tip(6.0), supply_mv=3000)
-    assert max(found.breakaway_v) == pytest.approx(MOST_OF_SUPPLY * 3.0)
+    assert max(found.breakaway_v) == pytest.approx(TUNING_LIMITS.travel.max_supply_share * 3.0)
     assert "its breakaway_volts can be 2.4 V at most" in found.note
 
 

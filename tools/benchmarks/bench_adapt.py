@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 
 from greywhale.adapt import BUDGET, AdaptationRequest, adapt
-from greywhale.adapt.decide import HALF_MINUTE, LIMIT
+from greywhale.adapt.limits import ADAPTATION_LIMITS
 from greywhale.arm import ArmParameters
 from greywhale.arm.parameters import Tip
 from greywhale.arm.plants import plant_row
@@ -35,6 +35,7 @@ from greywhale.loop import Experiment, human_reaches
 from greywhale.loop.controllers import controllers_of
 from greywhale.protocol.table import ParameterTable
 from greywhale.tune import tune
+from greywhale.tune.limits import WITHOUT_FLOORS
 from greywhale.tune.model import load_model
 from greywhale_sim.assemble import BenchOptions
 from greywhale_sim.lockstep import LockStepBench
@@ -44,6 +45,7 @@ from tools.benchmarks.tuning import practised
 from tools.support.foreign_arm import MuJoCoPlant, bench_of, foreign_arm, recorded, save
 from tools.support.person_at_work import ArmAt, PersonAtWork, grown_friction, stickier, working_bench
 
+WINDOW_S, MAX_EXCESS = ADAPTATION_LIMITS.decisions.window_s, ADAPTATION_LIMITS.decisions.max_excess
 WORK_S = 300.0
 PERSON = int(os.environ.get("GREYWHALE_PERSON", 3))
 FOREIGN = 2  # seed of MuJoCo's arm
@@ -162,7 +164,7 @@ def worked(seed: int, case: str) -> dict[str, Any]:
         model = load_model(file, force=True)
         changed = arm.changed(model.arm)
         model = replace(model, arm=changed, plants=plant_row(changed)[None], doubts=())
-        tuned = board.with_controllers(tune(model, start=controllers_of(start), floors=False).after)
+        tuned = board.with_controllers(tune(model, start=controllers_of(start), judging=WITHOUT_FLOORS).after)
         sets = {"start": start, "adapted": result.kept, "tuned": tuned}
         return {
             "facts": result.as_dict(),
@@ -194,7 +196,7 @@ def judged(case: str, found: dict[str, Any]) -> list[Figure]:
             float((adapted @ weight)[-60:].sum() / (alone @ weight)[-60:].sum()),
             "x",
         ),
-        Figure(f"{case}: worst half minute, beyond alone", worst, "", f"<= {LIMIT}", worst <= LIMIT),
+        Figure(f"{case}: worst half minute, beyond alone", worst, "", f"<= {MAX_EXCESS}", worst <= MAX_EXCESS),
         Figure(f"{case}: sets kept", kept, ""),
         Figure(f"{case}: sets taken back", len(facts["trials"]) - kept, ""),
         Figure(f"{case}: searches", facts["searches"], ""),
@@ -209,5 +211,5 @@ def total(ratios: Floats) -> float:
 
 def most_excess(adapted: Floats, alone: Floats) -> float:
     """By how much half a minute's error exceeded that of the arm left alone, (n,) each, as a share of its usual one."""
-    sums = [np.convolve(one, np.ones(HALF_MINUTE), "valid") for one in (adapted, alone)]
-    return float(((sums[0] - sums[1]) / np.maximum(sums[1], HALF_MINUTE * alone.mean())).max())
+    sums = [np.convolve(one, np.ones(WINDOW_S), "valid") for one in (adapted, alone)]
+    return float(((sums[0] - sums[1]) / np.maximum(sums[1], WINDOW_S * alone.mean())).max())

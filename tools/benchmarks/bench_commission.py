@@ -16,8 +16,8 @@ from typing import Any
 import numpy as np
 
 from greywhale.base.study import Task
-from greywhale.commission.judge import MOST_UNREST
 from greywhale.files.model import arm_toml
+from greywhale.measure.limits import SWING_LIMITS
 from greywhale_sim.assemble import BenchOptions
 from greywhale_sim.lockstep import LockStepBench
 from tools.benchmarks.figure import Figure, at_most
@@ -88,7 +88,7 @@ def judged(head: str, before: Run, after: Run, wall_s: float) -> list[Figure]:
             Figure(f"{head}, {name}: most that a joint's error grew", more, "mrad rms"),
         ]
     rests, rested = after.unrest["multi-steps"], before.unrest["multi-steps"]
-    hunting = int(((rests > MOST_UNREST) | (rests > 2.0 * rested)).sum())
+    hunting = int(((rests > SWING_LIMITS.max_unrest_rad) | (rests > 2.0 * rested)).sum())
     quiet = np.fmax(QUIET_V, before.ripple["multi-steps"])
     louder = float((after.ripple["multi-steps"] / quiet).max())
     return [

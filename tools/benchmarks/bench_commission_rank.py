@@ -30,6 +30,7 @@ from greywhale.loop.traces import Traces
 from greywhale.protocol.firmware import JOINTS, pwm_steps
 from greywhale.protocol.table import CONTROLLER_COLUMNS, ParameterTable
 from greywhale.tune import tune
+from greywhale.tune.limits import BY_THE_ARM
 from greywhale.tune.model import load_model
 from greywhale.tune.search.space import largest_ki
 from tools.benchmarks.figure import Figure, at_least
@@ -53,7 +54,7 @@ def sets(arm: ArmParameters, seed: int) -> Iterator[Controllers]:
         path = Path(folder) / "arm.toml"
         path.write_text(arm_toml(arm, "A worn arm."), encoding="utf-8")
         model = load_model(path, seed=0, force=True)
-    tuned = tune(model, budget=BUDGET, threads=threads(), floors=False, on_trial=True).after
+    tuned = tune(model, budget=BUDGET, threads=threads(), judging=BY_THE_ARM).after
     yield default_controller()
     yield tuned
     random = np.random.default_rng(seed)

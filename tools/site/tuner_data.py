@@ -23,9 +23,10 @@ from greywhale.optimise.optimiser import PACK
 from greywhale.protocol.firmware import JOINTS, pwm_steps
 from greywhale.protocol.table import CONTROLLER_COLUMNS
 from greywhale.tune import default, possible
-from greywhale.tune.judge import margins, standard
+from greywhale.tune.judge import margins
+from greywhale.tune.limits import TUNING_LIMITS as LIMITS
 from greywhale.tune.model import Model, load_model
-from greywhale.tune.search import objective, space, training
+from greywhale.tune.search import space, training
 from tools.site.bench_data import pot_numbers
 
 SCALE_RAD = 1e-5
@@ -76,9 +77,9 @@ def tuner_data() -> dict[str, Any]:
         "drills": _drills(model),
         "shown": SHOWN,
         "rests": {
-            "searching": _rests(model, margins.REST_S, 0, margins.SEARCH_BEYOND, swings.SEARCH_CYCLE),
-            "refining": _rests(model, margins.REST_LONG_S, 0, margins.SEARCH_BEYOND, swings.SEARCH_CYCLE),
-            "judging": _rests(model, margins.REST_LONG_S, 1, 1.0, swings.LIMIT_CYCLE),
+            "searching": _rests(model, LIMITS.margins.rest_s, 0, LIMITS.margins.search_beyond, swings.SEARCH_CYCLE),
+            "refining": _rests(model, LIMITS.margins.long_rest_s, 0, LIMITS.margins.search_beyond, swings.SEARCH_CYCLE),
+            "judging": _rests(model, LIMITS.margins.long_rest_s, 1, 1.0, swings.LIMIT_CYCLE),
         },
         "rattle": _rattle(),
         "prices": _prices(),
@@ -117,7 +118,7 @@ def _drills(model: Model) -> list[dict[str, Any]]:
                 "total_weight": drill.total_weight,
                 "importance": drill.importance,
                 "floor": floor.tolist(),
-                "least_room": np.maximum(possible.LEAST_SHARE * floor, possible.LEAST_RAD).tolist(),
+                "least_room": np.maximum(LIMITS.cost.least_room_share * floor, LIMITS.cost.least_room_rad).tolist(),
             }
         )
     return drills
@@ -152,31 +153,31 @@ def _rattle() -> dict[str, Any]:
 
 def _prices() -> dict[str, float]:
     return {
-        "soon_s": training.SOON_S,
-        "rms": objective.RMS,
-        "rattle": objective.RATTLE,
-        "louder": objective.LOUDER,
-        "quiet_rad": objective.QUIET_RAD,
-        "chatter_moving": objective.CHATTER,
-        "shaking": objective.SHAKING,
-        "bearable": objective.BEARABLE,
+        "soon_s": LIMITS.training.soon_s,
+        "rms": LIMITS.cost.rms_weight,
+        "rattle": LIMITS.cost.rattle_weight,
+        "louder": LIMITS.cost.louder_weight,
+        "quiet_rad": LIMITS.cost.unheard_rad,
+        "chatter_moving": LIMITS.cost.chatter_weight,
+        "shaking": LIMITS.cost.shaking_weight,
+        "bearable": LIMITS.cost.bearable_share,
         "chatter_moving_hz": swings.CHATTER_MOVING_HZ,
         "rattle_moving_rad": swings.RATTLE_MOVING_RAD,
-        "effort": objective.EFFORT,
-        "lost": objective.LOST,
+        "effort": LIMITS.cost.effort_weight,
+        "lost": LIMITS.cost.lost_cost,
         "chatter_at_rest_hz": swings.CHATTER_AT_REST_HZ,
         "quiet_share": swings.QUIET_SHARE,
-        "search_ripple": margins.SEARCH_RIPPLE,
-        "search_chatter": margins.SEARCH_CHATTER,
-        "travel": margins.TRAVEL_PRICE,
-        "chatter_at_rest": margins.CHATTER_PRICE,
-        "fail": margins.FAIL_PRICE,
-        "teeth": margins.TEETH_PRICE,
-        "ripple": margins.RIPPLE_PRICE,
-        "loud": margins.LOUD_PRICE,
-        "lost_at_rest": margins.LOST_PRICE,
-        "same": standard.SAME,
-        "shaken": standard.SHAKEN,
+        "search_ripple": LIMITS.margins.search_ripple_share,
+        "search_chatter": LIMITS.margins.search_chatter_share,
+        "travel": LIMITS.margins.travel_price,
+        "chatter_at_rest": LIMITS.margins.chatter_price,
+        "fail": LIMITS.margins.fail_price,
+        "teeth": LIMITS.margins.teeth_price,
+        "ripple": LIMITS.margins.ripple_price,
+        "loud": LIMITS.margins.loud_price,
+        "lost_at_rest": LIMITS.margins.lost_price,
+        "same": LIMITS.choice.same_ripple,
+        "shaken": LIMITS.choice.shaken_ripple,
     }
 
 
@@ -201,7 +202,7 @@ def _search(model: Model) -> dict[str, Any]:
             for number, stage in enumerate(default.STAGES, 1)
         ],
         "spaces": {"whole": _space(whole), "reduced": _space(reduced)},
-        "calmer": default.CALMER,
+        "calmer": LIMITS.choice.gain_reductions,
         "ku": default.KU,
         "ki": default.KI,
         "least_width": LEAST_WIDTH,

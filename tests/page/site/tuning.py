@@ -12,6 +12,7 @@ from greywhale.files.trajectory import Trajectory
 from greywhale.loop import experiment
 from greywhale.protocol.table import CONTROLLER_COLUMNS
 from greywhale.tune import default
+from greywhale.tune.limits import WITHOUT_FLOORS
 from greywhale.tune.model import load_model
 from greywhale.tune.request import TuningRequest
 from greywhale.tune.search.journal import TuningJournal
@@ -41,7 +42,7 @@ def tuning() -> dict[str, Any]:
                 before=model.controllers,
                 bounds={},
                 report=lambda *_, **__: None,
-                floors=False,
+                judging=WITHOUT_FLOORS,
             )
         )
         with TuningJournal(None, {}) as journal:

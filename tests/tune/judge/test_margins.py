@@ -15,7 +15,6 @@ from greywhale.protocol.table import ParameterTable
 from greywhale.tune.judge.margins import (
     DELAY,
     MOVING,
-    RIPPLE_PRICE,
     SCENARIOS,
     TEETH,
     Margins,
@@ -23,6 +22,7 @@ from greywhale.tune.judge.margins import (
     with_gain,
     with_softer_teeth,
 )
+from greywhale.tune.limits import TUNING_LIMITS
 from tools import ROOT
 
 ARM = default_arm()
@@ -122,7 +122,7 @@ def test_ripple_costs_something_and_what_is_beyond_the_limit_much(margins: Margi
     quiet, loud = found["at rest"].ripple[:, 0]
     assert (loud > 2.0 * quiet).all()
     within, beyond = (penalty(found, limit)[1] - penalty(found, ANY_RIPPLE)[1] for limit in (2.0 * loud, 0.5 * loud))
-    np.testing.assert_allclose(within, 0.5 * RIPPLE_PRICE)
+    np.testing.assert_allclose(within, 0.5 * TUNING_LIMITS.margins.ripple_price)
     assert (beyond > 1.0).all()
 
 

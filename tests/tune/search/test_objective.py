@@ -14,14 +14,9 @@ from greywhale.files.trajectory import Trajectory
 from greywhale.loop import default_controller, human_reaches, plant_row
 from greywhale.measure.swings import RATTLE_MOVING_RAD
 from greywhale.protocol.table import ParameterTable
+from greywhale.tune.limits import TUNING_LIMITS
 from greywhale.tune.possible import scale_of
 from greywhale.tune.search.objective import (
-    BEARABLE,
-    CHATTER,
-    LOUDER,
-    QUIET_RAD,
-    RATTLE,
-    SHAKING,
     ErrorScale,
     FollowingErrors,
     Objective,
@@ -31,8 +26,6 @@ from greywhale.tune.search.objective import (
     relative_costs,
 )
 from greywhale.tune.search.training import (
-    LEVELS,
-    SOON_S,
     fit_motion,
     moves,
     reach,
@@ -41,6 +34,7 @@ from greywhale.tune.search.training import (
     training_motions,
 )
 
+COST, TRAINING = TUNING_LIMITS.cost, TUNING_LIMITS.training
 ARM = default_arm()
 PLANTS = plant_row(ARM)[None]
 BEFORE = default_controller()
@@ -90,17 +84,22 @@ def test_rattling_and_chatter_cost_most_beyond_what_was_before_and_near_the_marg
     quiet, loud, chattering = none.copy(), none.copy(), none.copy()
     quiet[0, 0, 1, 3], loud[0, 0, 1, 3], chattering[0, 0, 0, 2] = 0.002, 0.003, 170.0
     costs = [relative_costs(FollowingErrors(none, none, rattle, none), scale, 15.0) for rattle in (quiet, loud)]
-    assert costs[0][0, 0, 1, 3] == pytest.approx(np.sqrt(RATTLE * 0.002 / 0.05))
-    assert costs[1][0, 0, 1, 3] == pytest.approx(np.sqrt(RATTLE * (0.003 + LOUDER * 0.001) / 0.05))
+    assert costs[0][0, 0, 1, 3] == pytest.approx(np.sqrt(COST.rattle_weight * 0.002 / 0.05))
+    assert costs[1][0, 0, 1, 3] == pytest.approx(
+        np.sqrt(COST.rattle_weight * (0.003 + COST.louder_weight * 0.001) / 0.05)
+    )
     assert np.count_nonzero(costs[1]) == 1
     beaten = relative_costs(FollowingErrors(none, none, none, chattering), scale, 15.0)
-    assert beaten[0, 0, 0, 2] == pytest.approx(np.sqrt(CHATTER * 1.0))
+    assert beaten[0, 0, 0, 2] == pytest.approx(np.sqrt(COST.chatter_weight * 1.0))
     silent = replace(scale, rattle=np.zeros((1, 2, 4)))
-    free = relative_costs(FollowingErrors(none, none, np.full_like(none, QUIET_RAD), none), silent, 15.0)
-    np.testing.assert_allclose(free, np.sqrt(RATTLE * QUIET_RAD / 0.05))
+    free = relative_costs(FollowingErrors(none, none, np.full_like(none, COST.unheard_rad), none), silent, 15.0)
+    np.testing.assert_allclose(free, np.sqrt(COST.rattle_weight * COST.unheard_rad / 0.05))
     always = replace(scale, rattle=np.full((1, 2, 4), RATTLE_MOVING_RAD))
     shaken = relative_costs(FollowingErrors(none, none, always.rattle[:, None], none), always, 15.0)
-    np.testing.assert_allclose(shaken, np.sqrt(RATTLE * RATTLE_MOVING_RAD / 0.05 + SHAKING * (1.0 - BEARABLE)))
+    np.testing.assert_allclose(
+        shaken,
+        np.sqrt(COST.rattle_weight * RATTLE_MOVING_RAD / 0.05 + COST.shaking_weight * (1.0 - COST.bearable_share)),
+    )
 
 
 def test_a_joint_that_is_tuned_one_sidedly_pays(objective: Objective) -> None:
@@ -132,7 +131,7 @@ def test_moves_go_to_both_sides_in_several_sizes() -> None:
     motion = moves(np.full(4, -2.0), np.full(4, 2.0))
     assert motion.angles.max(axis=0) == pytest.approx(np.ones(4))
     assert motion.angles.min(axis=0) == pytest.approx(-np.ones(4))
-    for steps in (-np.diff(LEVELS), np.diff(LEVELS)):
+    for steps in (-np.diff(TRAINING.levels), np.diff(TRAINING.levels)):
         assert sum(steps > 0) >= 3
         assert steps[steps > 0].min() <= 0.1 + 1e-9
         assert steps.max() >= 1.0
@@ -145,19 +144,19 @@ def test_the_weight_starts_again_with_every_move() -> None:
     weight = time_since_move(Trajectory(time_s, np.tile(angle[:, None], 4)), 0.5)
     assert len(weight) == 3500
     assert (weight[:500] == 0.0).all()
-    assert weight[500] == pytest.approx(SOON_S)
+    assert weight[500] == pytest.approx(TRAINING.soon_s)
     # A move is over when nothing changed for 0.1 s.
-    assert weight[1450] == pytest.approx(SOON_S + 0.95, abs=0.01)
-    assert weight[1550] == pytest.approx(SOON_S, abs=0.01)
-    assert weight[2450] == pytest.approx(SOON_S + 0.85, abs=0.02)
-    assert weight[2550] == pytest.approx(SOON_S, abs=0.01)
+    assert weight[1450] == pytest.approx(TRAINING.soon_s + 0.95, abs=0.01)
+    assert weight[1550] == pytest.approx(TRAINING.soon_s, abs=0.01)
+    assert weight[2450] == pytest.approx(TRAINING.soon_s + 0.85, abs=0.02)
+    assert weight[2550] == pytest.approx(TRAINING.soon_s, abs=0.01)
 
 
 def test_a_trembling_hand_is_at_rest() -> None:
     time_s = np.arange(401) / 200.0
     tremor = 0.003 * np.sin(2 * np.pi * 10.0 * time_s)
     weight = time_since_move(Trajectory(time_s, np.tile(tremor[:, None], 4)), 0.0)
-    assert weight[-1] == pytest.approx(SOON_S + 2.0, abs=0.01)
+    assert weight[-1] == pytest.approx(TRAINING.soon_s + 2.0, abs=0.01)
 
 
 def test_motions_keep_within_limits_and_stops() -> None:

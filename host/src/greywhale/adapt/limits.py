@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 from greywhale.base.limits import BY_THE_FIRMWARE, MEASURED_ON_ARMS, limit
 from greywhale.measure.limits import SWING_LIMITS, SwingLimits
+from greywhale.tune.limits import WITHOUT_FLOORS, TuningLimits
 
 
 @dataclass(frozen=True)
@@ -147,6 +148,7 @@ class AdaptationLimits:
     proposals: ProposalLimits = ProposalLimits()
     decisions: DecisionLimits = DecisionLimits()
     swings: SwingLimits = SWING_LIMITS
+    tuning: TuningLimits = WITHOUT_FLOORS
 
 
 ADAPTATION_LIMITS = AdaptationLimits()

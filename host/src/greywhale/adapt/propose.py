@@ -74,7 +74,7 @@ def propose(task: Task) -> Proposal:
         seed=task.seed,
         threads=1,
         start=running,
-        floors=False,
+        judging=task.limits.tuning,
         motion=motion_of(task.recent, task.limits.proposals),
     ).after
     best = (1.0, 0.0, running)

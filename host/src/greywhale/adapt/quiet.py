@@ -49,8 +49,14 @@ class Swings:
 
 def find_excess(now: Swings, before: Swings, supply_v: float, limits: SwingLimits = SWING_LIMITS) -> str:
     """A clause on what is beyond its limit, "" for nothing."""
-    rows = (one[None] for one in (before.unrest, before.rattle, before.chatter, before.ripple))
-    most_of = AllowedSwings.beside(*rows, QUIET_SHARE * supply_v, limits)
+    most_of = AllowedSwings.beside(
+        before.unrest[None],
+        before.rattle[None],
+        before.chatter[None],
+        before.ripple[None],
+        QUIET_SHARE * supply_v,
+        limits,
+    )
     allowed = {
         "unrest": (most_of.unrest[0], 1e3, "mrad rms at rest"),
         "rattle": (most_of.rattle[0], 1e3, "mrad rms of rattling"),

@@ -64,10 +64,10 @@ def adapt(
     `warn` is called before the motors start.
     The set from the start runs again at the end; `store_kept` stores what was kept. Raises UserError.
     """
-    model = load_model(request.model, force=True)
+    model = load_model(request.model, force=True, judging=request.judging.tuning)
     with background(request.workers) as searches, Device(request.port) as device:
         start = read_parameters(device, report)
-        refuse_uncalibrated(model.arm, start)
+        refuse_uncalibrated(model.arm, start, request.judging.tuning.model)
         session = _Session(device, request, model, start, searches, report)
         try:
             warn()

@@ -45,13 +45,18 @@ def limit(value: T, unit: str, reason: str, origin: str = BY_JUDGEMENT) -> T:
 
 
 def limits_in(limits: Any) -> Iterator[Limit]:
-    """Every limit of a dataclass and of its groups; a group that another module made has a table of its own there."""
+    """Every limit of a dataclass and of its groups; a group that another room made has a table of its own there."""
     for one in fields(limits):
         value = getattr(limits, one.name)
         if not is_dataclass(value):
             yield Limit(one.name, value, **one.metadata)
-        elif type(value).__module__ == type(limits).__module__:
+        elif _room_of(value) == _room_of(limits):
             yield from (replace(inner, name=f"{one.name}.{inner.name}") for inner in limits_in(value))
+
+
+def _room_of(limits: Any) -> str:
+    """What stands before the name limits in the module that made them."""
+    return type(limits).__module__.partition(".limits")[0]
 
 
 def changed(limits: Any, usual: Any) -> dict[str, Any]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, NotRequired, TypedDict
 
@@ -15,6 +16,7 @@ from greywhale.files import controller as controller_file
 from greywhale.files.outputs import require_files, require_folder, require_new, require_no_files
 from greywhale.loop import controller_row
 from greywhale.tune import METHODS, STRATEGIES, check_request, tune
+from greywhale.tune.limits import TUNING_LIMITS
 from greywhale.tune.model import SAMPLES, load_model
 from greywhale.tune.report.controller_file import save
 from greywhale.tune.report.summary import summary
@@ -128,7 +130,7 @@ def command(
             bounds=limits,
             journal=journal,
             resume=resume,
-            quiet=quiet,
+            judging=replace(TUNING_LIMITS, quiet=quiet),
             report=report,
         )
     save(outcome, out)

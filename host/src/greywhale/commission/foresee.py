@@ -16,7 +16,7 @@ import numpy as np
 from greywhale.arm import ArmParameters
 from greywhale.arm.plants import plant_row
 from greywhale.base.types import Controllers, Flags, Floats
-from greywhale.commission.limits import COMMISSIONING_LIMITS, StepLimits
+from greywhale.commission.limits import COMMISSIONING_LIMITS, CommissioningLimits, StepLimits
 from greywhale.commission.measures import Measures, measure
 from greywhale.commission.motions import PARTS, Check
 from greywhale.loop import Experiment, multi_steps
@@ -84,15 +84,16 @@ def foresee(
     check: Check,
     traces: Traces,
     measured: Measures,
-    limits: StepLimits = COMMISSIONING_LIMITS.steps,
+    judging: CommissioningLimits = COMMISSIONING_LIMITS,
 ) -> Foresight:
     """What a model of this arm foresees; `traces` and `measured` are those of the check before, with `table`. The steps
     go wherever the board's limits let the arm go: after the commissioning a hand will.
     """
     moves = PARTS.index("moves")
     predicted = measure(predict(arm, table, traces)[0], check, table.supply_v).error[moves]
-    believed = np.abs(predicted / np.maximum(measured.error[moves], LEAST) - 1.0) <= limits.believed_share
+    believed = np.abs(predicted / np.maximum(measured.error[moves], LEAST) - 1.0) <= judging.steps.believed_share
     plant, before = plant_row(arm)[None], controllers_of(table)
-    experiment = Experiment(clip_motion(multi_steps(), *reach(arm, table, plant)), arm, table=table, seed=SEED)
+    motion = clip_motion(multi_steps(), *reach(arm, table, plant, judging.tuning.training))
+    experiment = Experiment(motion, arm, table=table, seed=SEED)
     found = experiment.run_exact(before[None], plant, every=1)
-    return Foresight(experiment, plant, before, found.mse[0], believed, limits)
+    return Foresight(experiment, plant, before, found.mse[0], believed, judging.steps)

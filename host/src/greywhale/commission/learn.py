@@ -77,8 +77,7 @@ class RoundTuner:
             threads=self.options.threads,
             start=self.start,
             report=report,
-            floors=False,
-            on_trial=True,
+            judging=self.options.judging.tuning,
         )
         if not tuning.complete:
             raise KeyboardInterrupt
@@ -109,7 +108,9 @@ class RoundTuner:
     def _model(self) -> Model:
         """Its doubts do not refuse it, because the arm itself judges what comes of it."""
         params = self.book.path("before.toml")
-        return load_model(self.path, seed=self.options.seed, force=True, params=params)
+        return load_model(
+            self.path, seed=self.options.seed, force=True, params=params, judging=self.options.judging.tuning
+        )
 
     def _with_failures(self, model: Model) -> Model:
         """The same model with plants that show what the arm did, where the search and the margins see them."""

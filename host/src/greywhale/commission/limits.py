@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from greywhale.base.limits import MEASURED_IN_TIME, MEASURED_IN_TRIALS, MEASURED_ON_ARMS, limit
 from greywhale.measure.limits import SWING_LIMITS, SwingLimits
+from greywhale.tune.limits import BY_THE_ARM, TuningLimits
 
 
 @dataclass(frozen=True)
@@ -191,6 +192,7 @@ class CommissioningLimits:
     judge: JudgeLimits = JudgeLimits()
     search: SearchLimits = SearchLimits()
     swings: SwingLimits = SWING_LIMITS
+    tuning: TuningLimits = BY_THE_ARM
 
 
 COMMISSIONING_LIMITS = CommissioningLimits()

@@ -127,7 +127,7 @@ class _Commissioning:
         facts = book.get("start")
         if facts is None:
             rig = arm()
-            refuse_uncalibrated(self.nominal, rig.before)
+            refuse_uncalibrated(self.nominal, rig.before, options.judging.tuning.model)
             limits = limits_of(self.nominal, rig.before, rig.pose(), options.ranges or {})
             room = JointRange(limits.pose, limits.low, limits.high)
             if options.model is None:
@@ -184,7 +184,7 @@ class _Commissioning:
         model, learnt = tuner.validate(tuned, to_validate(trials))
         before = trials.before
         trials.foresight = foresight = foresee(
-            model.arm, trials.table, trials.check, before.traces, before.measured, trials.judging.steps
+            model.arm, trials.table, trials.check, before.traces, before.measured, trials.judging
         )
         trials.others |= learnt.others
         self.on_model = CheckOnModel.of(model, trials, foresight, self.options.seed, self.options.threads)

@@ -67,7 +67,8 @@ class CheckOnModel:
         arm, table, before = with_usual_noise(model.arm), trials.table.with_raw(trials.others), trials.before
         wanted, running = trials.judging.search, controllers_of(table)[None]
         plants = np.vstack([plant_row(arm), loosen_gears(arm, wanted.gear_sigmas)])
-        margins = Margins(arm, table, plants, threads=threads, searching=True, seed=seed)
+        judging = trials.judging.tuning
+        margins = Margins(arm, table, plants, threads=threads, searching=True, seed=seed, judging=judging)
         plants = np.vstack([plants[:1], _worsen(plants[1:], wanted)])
         led = LedModel(arm, table, before.traces)
         (traces,) = led.run(running, plants[:1])
@@ -118,7 +119,7 @@ class CheckOnModel:
         """The error in what a hand leads, rms as a share of that before, and what the rest costs, (n, 4) each."""
         unrest = self.margins.unrest(controllers)
         near = {name: found for name, found in unrest.items() if name not in (TWICE, TEETH)}
-        prices, wanted = penalty(near, NO_LIMIT_V), self.wanted
+        prices, wanted = penalty(near, NO_LIMIT_V, self.trials.judging.tuning.margins), self.wanted
         ratios, restless = self.foresight.estimate(controllers, self.plants[1:])
         prices += wanted.price * np.maximum(restless / self.swings[:, None] - 1.0, 0.0).max(axis=0)
         worse = np.maximum(ratios / wanted.before_aim - 1.0, 0.0)
@@ -161,7 +162,7 @@ class CheckOnModel:
     def _search_around(
         self, begin: Controllers, vary: Flags, seed: int, report: NotedProgress, what: str = "searching on the model"
     ) -> Controllers:
-        table, best = self.trials.table, begin.copy()
+        table, best, limits = self.trials.table, begin.copy(), self.trials.judging.tuning.space
         whole = sum(sets for _, sets in self.wanted.packs)
 
         def costs(controllers: Controllers) -> Floats:
@@ -173,7 +174,7 @@ class CheckOnModel:
             if number:
                 search.try_again("check")
             search.run(
-                Space.default("sf", found.best, table["supply_mv"], table.period_ms),
+                Space.default("sf", found.best, table["supply_mv"], table.period_ms, limits),
                 stage="check",
                 method=METHOD,
                 budget=sets // len(TURNS),

@@ -5,6 +5,7 @@
 """
 
 from greywhale.tune.judge.held_out import HeldOut
+from greywhale.tune.limits import TUNING_LIMITS, TuningLimits
 from greywhale.tune.result import Curve, TuningResult
 from greywhale.tune.run import DEFAULT_BUDGET, DEFAULT_STRATEGY, METHODS, check_request, tune
 from greywhale.tune.search.space import STRATEGIES
@@ -14,8 +15,10 @@ __all__ = [
     "DEFAULT_STRATEGY",
     "METHODS",
     "STRATEGIES",
+    "TUNING_LIMITS",
     "Curve",
     "HeldOut",
+    "TuningLimits",
     "TuningResult",
     "check_request",
     "tune",

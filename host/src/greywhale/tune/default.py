@@ -33,9 +33,9 @@ from greywhale.optimise.optimiser import PACK
 from greywhale.optimise.shift_invariant import ShiftInvariantWolfWhale
 from greywhale.protocol.joints import unused
 from greywhale.protocol.table import CONTROLLER_COLUMNS
-from greywhale.tune.judge.choose import FAIR, Judge, Remembering, choose, next_best
+from greywhale.tune.judge.choose import Judge, Remembering, choose, next_best
 from greywhale.tune.judge.held_out import judge_held_out
-from greywhale.tune.judge.margins import MOVING, REST_LONG_S, Margin, Margins, penalty
+from greywhale.tune.judge.margins import MOVING, Margin, Margins, penalty
 from greywhale.tune.judge.standard import Standard
 from greywhale.tune.method import Costs, Judgement
 from greywhale.tune.model import Model
@@ -68,29 +68,13 @@ STAGES = (
     Stage("shape at last", 0.2, 0.05, TOGETHER),
     Stage("every corner", 0.3, 0.03, TOGETHER, every_corner=True),
 )
-# What joints get that fall short in the last judgement, beyond the budget, and what a failure costs there.
+# What joints get that fall short in the last judgement, beyond the budget.
 AGAIN = Stage("again", 0.06, 0.05, TOGETHER)
-STRICT_PRICE = 0.6
 # The search tracks on so many plants, the estimate first; of the last judgement, the errors use all.
 SEARCH_PLANTS = 2
 FULL_PACK = 16  # on two plants: that fills the lanes of the simulation twice
 SHORT_BUDGET = 1000  # evaluations; below that, more rounds of a smaller pack find more
 JUDGING_SEED = 1000  # of sensor noise that the search does not know by heart
-# More than any controller costs: none is chosen that falls short of the standard.
-UNFIT = 100.0
-# A joint that keeps its controller may lose so much to its neighbours' quicker moves before they step back.
-FAIR_TO_KEPT = 1.05
-# But if the arm itself will judge, a joint that only the model calls restless gets its chance there.
-ON_TRIAL = 0.1
-# Shares of the best's Ku and Ki that compete in the last judgement: full voltage may shake gears, and an integral swing
-# in friction, that were quiet in the search.
-CALMER = (
-    *((1.0, ki) for ki in (0.5, 0.2, 0.0)),
-    *((0.85, ki) for ki in (0.85, 0.5)),
-    *((0.7, ki) for ki in (0.7, 0.3, 0.0)),
-    *((0.5, ki) for ki in (0.3, 0.0)),
-    (0.35, 0.0),
-)
 KU, KI = (CONTROLLER_COLUMNS.index(name) for name in ("ku_mv", "ki"))
 
 
@@ -98,36 +82,38 @@ class DefaultMethod:
     """See the head of this file."""
 
     def __init__(self, task: TuningRequest) -> None:
-        self.task = task
+        self.task, self.limits = task, task.judging
         self.model = model = give_usual_noise(task.model)
         self.table = model.table
         supply = self.table["supply_mv"]
         period = self.table.period_ms
-        self.space = Space.default(task.strategy, task.before, supply, period).with_bounds(task.bounds, period)
+        whole = Space.default(task.strategy, task.before, supply, period, self.limits.space)
+        self.space = whole.with_bounds(task.bounds, period)
         motions = self._motions(task.seed)
-        scale = scale_of(motions, model.plants, task.before, task.threads)
+        scale = scale_of(motions, model.plants, task.before, task.threads, self.limits)
         some = model.plants[:SEARCH_PLANTS]
-        self.objective = Objective(motions, some, scale.first(len(some)), task.threads)
+        self.objective = Objective(motions, some, scale.first(len(some)), task.threads, self.limits.cost)
         other_noise = self._motions(task.seed + JUDGING_SEED)
-        self.judging = Objective(other_noise, model.plants, scale, task.threads)
+        self.judging = Objective(other_noise, model.plants, scale, task.threads, self.limits.cost)
         # Longer and with other noise, since a search learns its own noise by heart.
-        self.judging_margins = self._margins(rest_s=REST_LONG_S, noise=1)
+        self.judging_margins = self._margins(rest_s=self.limits.margins.long_rest_s, noise=1)
         # With bounds, what is uploaded keeps within them, whatever ran before.
         self.start = self.space.controllers(self.space.points(task.before[None]))[0] if task.bounds else task.before
         self.margins = self._margins(searching=True)
         self.margins_before = self.judging_margins.check(self.start)
-        self.standard = Standard.of(self.margins_before, self.table.supply_v, task.quiet)
+        self.standard = Standard.of(self.margins_before, self.table.supply_v, self.limits.quiet, self.limits.choice)
         self.found = SearchState.nothing(self.start)
 
     def _motions(self, seed: int) -> tuple[TrainingMotion, ...]:
-        arm, plants = self.model.arm, self.model.plants
+        arm, plants, limits = self.model.arm, self.model.plants, self.limits.training
         if self.task.motion is None:
-            return training_motions(arm, self.table, plants, seed)
-        return (own_motion(self.task.motion, arm, self.table, plants, seed),)
+            return training_motions(arm, self.table, plants, seed, limits)
+        return (own_motion(self.task.motion, arm, self.table, plants, seed, limits),)
 
     def _margins(self, **options: Any) -> Margins:
         task, plants = self.task, self.objective.plants
-        return Margins(self.model.arm, self.table, plants, threads=task.threads, seed=task.seed, **options)
+        common: dict[str, Any] = {"threads": task.threads, "seed": task.seed, "judging": self.limits}
+        return Margins(self.model.arm, self.table, plants, **common, **options)
 
     def facts(self) -> dict[str, Any]:
         return {
@@ -152,7 +138,7 @@ class DefaultMethod:
         search.try_again("start")
         for number, stage in enumerate(STAGES, 1):
             if number > 1:
-                self.margins = self._margins(searching=True, rest_s=REST_LONG_S)  # an integral swings slowly
+                self.margins = self._margins(searching=True, rest_s=self.limits.margins.long_rest_s)
             left = task.budget - self.found.evaluations
             share = left if stage is STAGES[-1] else min(left, round(stage.share * task.budget))
             if number > 1 and share > len(stage.groups):
@@ -180,22 +166,24 @@ class DefaultMethod:
 
     def costs(self, controllers: Controllers) -> Floats:
         """The search's costs: (n, 4)."""
-        return self.objective.costs(controllers) + penalty(self.margins.unrest(controllers), self.standard.quiet_v)
+        restless = penalty(self.margins.unrest(controllers), self.standard.quiet_v, self.limits.margins)
+        return self.objective.costs(controllers) + restless
 
     def judge_costs(self, controllers: Controllers, exact: bool = False) -> Floats:
         """The same cost on all plants, with other noise; `exact`: in the bench's own arithmetic."""
         costs: Floats = self.judging.costs(controllers, exact=exact)
         unrest = self.judging_margins.unrest(controllers, exact=exact)
-        restless = penalty(unrest, self.standard.quiet_v)
-        if self.task.on_trial:
-            return costs + ON_TRIAL * restless
-        return costs + restless + UNFIT * self.standard.falls_short(unrest, (controllers == self.start).all(axis=2))
+        restless, limits = penalty(unrest, self.standard.quiet_v, self.limits.margins), self.limits.choice
+        if self.limits.by_the_arm:
+            return costs + limits.unrest_weight_on_arm * restless
+        short = self.standard.falls_short(unrest, (controllers == self.start).all(axis=2))
+        return costs + restless + limits.unfit_cost * short
 
     def _contenders(self) -> Controllers:
         """The best few of every joint (k, 4, 13), and the best with less voltage or integral: steadier and quieter."""
-        kept = self.found.contenders(KEPT)
-        calmer = np.repeat(kept[:1], len(CALMER), axis=0)
-        for row, (ku, ki) in zip(calmer, CALMER, strict=True):
+        kept, reductions = self.found.contenders(KEPT), self.limits.choice.gain_reductions
+        calmer = np.repeat(kept[:1], len(reductions), axis=0)
+        for row, (ku, ki) in zip(calmer, reductions, strict=True):
             row[:, KU] = np.round(ku * row[:, KU])
             row[:, KI] = np.round(ki * row[:, KI])
         unchanged = (kept[0] == self.start).all(axis=1)
@@ -210,33 +198,34 @@ class DefaultMethod:
         costs more than before there, or falls short of the standard, is searched again, then gets its next best, and at
         last what it had.
         """
-        contenders = self._contenders()
+        contenders, limits = self._contenders(), self.limits.choice
         judge, judge_exactly = Remembering(self.judge_costs), Remembering(partial(self.judge_costs, exact=True))
-        first, _, _ = choose(self.start, contenders, judge)
+        first, _, _ = choose(self.start, contenders, judge, limits)
         missed = (first == self.start).all(axis=1) & (contenders[0] != self.start).any(axis=1)
-        if missed.any() and not self.task.on_trial:
+        if missed.any() and not self.limits.by_the_arm:
             rows = np.where(missed[:, None], contenders[0], first)
             contenders = np.concatenate([self._search_again(rows, missed), contenders])
-            first, _, _ = choose(self.start, contenders, judge)
+            first, _, _ = choose(self.start, contenders, judge, limits)
         after = first.copy()
         others: dict[int, list[Controllers]] = {}
         while True:
             before_cost, after_cost = judge_exactly(np.stack([self.start, after]))
             margins = self.judging_margins.check(after)
             changed = (after != self.start).any(axis=1)
-            worse = after_cost > np.where(changed, FAIR, FAIR_TO_KEPT) * before_cost
-            if not self.task.on_trial:
+            worse = after_cost > np.where(changed, limits.joint_slack, limits.kept_joint_slack) * before_cost
+            if not self.limits.by_the_arm:
                 worse |= self.standard.joints_short(margins, ~changed)
             if worse.any() and not (worse & changed).any():
                 worse = self._disturbing(after, worse, judge)
             if not (worse & changed).any():
                 return after, margins, before_cost, after_cost
-            if not others and not self.task.on_trial:
+            if not others and not self.limits.by_the_arm:
                 contenders = np.concatenate([self._search_again(first, worse & changed), contenders])
             for joint in map(int, np.flatnonzero(worse & changed)):
                 if joint not in others:
                     still = np.flatnonzero(contenders[:, joint, KI] == 0)
-                    others[joint] = [*next_best(first, contenders, joint, judge, still), self.start[joint]]
+                    best = next_best(first, contenders, joint, judge, still, limits)
+                    others[joint] = [*best, self.start[joint]]
                 after[joint] = others[joint].pop(0)
 
     def _search_again(self, rows: Controllers, short: Flags) -> Controllers:
@@ -246,7 +235,8 @@ class DefaultMethod:
         """
 
         def costs(controllers: Controllers) -> Floats:
-            restless = penalty(self.margins.unrest(controllers), self.standard.quiet_v, STRICT_PRICE)
+            unrest = self.margins.unrest(controllers)
+            restless = penalty(unrest, self.standard.quiet_v, self.limits.margins, strict=True)
             return self.objective.costs(controllers) + restless
 
         search = LockstepSearch(costs, SearchState.nothing(rows))
@@ -274,7 +264,8 @@ class DefaultMethod:
         task.report("judging", 0.5)
         margins_before = self.judging_margins.check(task.before) if task.bounds else self.margins_before
         task.report("judging", 0.8)
-        held_out = judge_held_out(model.arm, self.table, model.plants[0], task.before, after, task.threads, task.floors)
+        plant = model.plants[0]
+        held_out = judge_held_out(model.arm, self.table, plant, task.before, after, task.threads, self.limits)
         task.report("judging", 1.0)
         return Judgement(
             after=after,

@@ -24,13 +24,12 @@ from greywhale.protocol.joints import require_same
 from greywhale.protocol.schema import Board
 from greywhale.protocol.table import ParameterTable
 from greywhale.tune import model_checks as checks
+from greywhale.tune.limits import TUNING_LIMITS, ModelLimits, TuningLimits
 from greywhale.tune.model_checks import Doubt, Identification
 from greywhale.tune.model_edits import UNSEALED, doubt_edits
 from greywhale.tune.travel import Travel, travel_of
 
 SAMPLES = 8
-# By so many standard deviations the gears of the second plant are looser than the estimate's.
-LOOSER = 0.5
 MOST_SAMPLES = 1000  # every one is simulated for every controller that is tried
 
 
@@ -67,6 +66,7 @@ def load_model(
     force: bool = False,
     params: str | Path | None = None,
     arm: str | Path | None = None,
+    judging: TuningLimits = TUNING_LIMITS,
 ) -> Model:
     """Read a model.toml (or an arm.toml, or one of the shipped arms by name, with `force`) and judge it.
 
@@ -80,13 +80,15 @@ def load_model(
     facts = checks.identification_of(identified, str(path))
     table, table_doubts = _table(identified, facts, params)
     require_same(str(path), identified.joints_in_use, table.name, table.joints_in_use)
-    doubts = _doubts(identified, facts, table, arm)
+    doubts = _doubts(identified, facts, table, arm, judging.model)
     plants = plant_row(identified)[None]
     travel = None
     if facts is not None and facts.covariance is not None:
-        plants = np.insert(sampled_plants(identified, samples, seed), 1, loosen_gears(identified, LOOSER), axis=0)
-        doubts += checks.doubt_precision(identified, table)
-        travel = travel_of(identified, table)
+        plants = np.insert(
+            sampled_plants(identified, samples, seed), 1, loosen_gears(identified, judging.model.gear_sigmas), axis=0
+        )
+        doubts += checks.doubt_precision(identified, table, judging)
+        travel = travel_of(identified, table, limits=judging.travel)
     doubts += table_doubts
     if doubts and not force:
         raise UserError(_refusal(str(path), doubts))
@@ -104,18 +106,22 @@ def load_model(
 
 
 def _doubts(
-    arm: ArmParameters, facts: Identification | None, table: ParameterTable, wanted: str | Path | None
+    arm: ArmParameters,
+    facts: Identification | None,
+    table: ParameterTable,
+    wanted: str | Path | None,
+    limits: ModelLimits,
 ) -> list[Doubt]:
     """Everything that speaks against the model, the gravest first."""
     doubts = list(checks.doubt_completeness(facts))
     if facts is not None:
-        doubts += doubt_edits(arm, facts)
+        doubts += doubt_edits(arm, facts, limits)
         doubts += checks.doubt_validation(facts)
         doubts += checks.doubt_behaviour(facts)
         doubts += checks.doubt_missing_covariance(arm, facts)
     if wanted is not None:
         doubts += checks.doubt_other_arm(arm, load_arm(wanted), str(wanted))
-    return [*doubts, *checks.doubt_other_board(arm, facts, table)]
+    return [*doubts, *checks.doubt_other_board(arm, facts, table, limits)]
 
 
 def _table(

@@ -23,15 +23,12 @@ from greywhale.protocol import schema
 from greywhale.protocol.firmware import TICK_S
 from greywhale.protocol.schema import Board
 from greywhale.protocol.table import ParameterTable, find_board, refuse_unknown
+from greywhale.tune.limits import TUNING_LIMITS, ModelLimits, TrainingLimits, TuningLimits
 from greywhale.tune.search.training import fit_motion, moves, reach
 
-# Half of the arms that the logs allow may follow a motion differently from the estimate by this share of its tracking
-# error. Slow reaches show friction and gravity, quick moves show inertia and damping.
-SPREAD = {"slow reaches": 0.5, "quick moves": 0.25}
+SLOW, QUICK = "slow reaches", "quick moves"
 SPREAD_SAMPLES, ONE_BY_ONE_SAMPLES = 33, 9
 REACHES_SEED, REACHES_S, WAIT_TICKS = 2002, 6.0, 200
-# How far numbers that should agree may differ: supplies and potentiometers' slopes (relative).
-SAME_SUPPLY, SAME_SLOPE = 0.02, 0.1
 CERTAIN = 1e-20  # a variance of next to nothing
 MATCH = "after `greywhale calibrate`, `greywhale arm match` writes the arm file anew"
 CONVERTER_SPAN = 16368  # four conversions of 10 bits, as the board counts a potentiometer's whole track
@@ -186,18 +183,21 @@ def doubt_missing_covariance(arm: ArmParameters, facts: Identification) -> Itera
     )
 
 
-def doubt_precision(arm: ArmParameters, table: ParameterTable) -> Iterator[Doubt]:
+def doubt_precision(
+    arm: ArmParameters, table: ParameterTable, judging: TuningLimits = TUNING_LIMITS
+) -> Iterator[Doubt]:
     """Doubt a model if the arms that its logs allow follow differently under the board's present controllers.
 
     Single parameters may be known poorly without harm (torque per volt of a joint that carries nothing). So the effect
     on the motion decides.
     """
-    experiments = _motions(arm, table)
+    spread = {SLOW: judging.model.slow_spread, QUICK: judging.model.quick_spread}
+    experiments = _motions(arm, table, judging.training)
     plants = sampled_plants(arm, SPREAD_SAMPLES)
     shares = {name: _share_of_error(one, table, plants) for name, one in experiments.items()}
-    motion = max(shares, key=lambda name: float(np.max(shares[name])) / SPREAD[name])
+    motion = max(shares, key=lambda name: float(np.max(shares[name])) / spread[name])
     joint = int(np.argmax(shares[motion]))
-    if shares[motion][joint] <= SPREAD[motion]:
+    if shares[motion][joint] <= spread[motion]:
         return
     facts = identification_of(arm, arm.name)
     assert facts is not None
@@ -214,15 +214,15 @@ def doubt_precision(arm: ArmParameters, table: ParameterTable) -> Iterator[Doubt
     yield Doubt(
         f"joint {joint} ({JOINT_NAMES[joint]}) is too uncertain: arms that its logs allow follow {motion} "
         f"differently by {100 * shares[motion][joint]:.0f} % of the tracking error (at most "
-        f"{100 * SPREAD[motion]:.0f} %), most of all because {kind} is {size}",
+        f"{100 * spread[motion]:.0f} %), most of all because {kind} is {size}",
         f"record again ({EXCITATION.get(kind, 'move that joint through its range')}) and identify again",
     )
 
 
-def _motions(arm: ArmParameters, table: ParameterTable) -> dict[str, Experiment]:
-    low, high = reach(arm, table, plant_row(arm)[None])
-    slow, quick = SPREAD
-    motions = {slow: fit_motion(human_reaches(REACHES_SEED, REACHES_S), low, high), quick: moves(low, high)}
+def _motions(arm: ArmParameters, table: ParameterTable, limits: TrainingLimits) -> dict[str, Experiment]:
+    low, high = reach(arm, table, plant_row(arm)[None], limits)
+    slow = fit_motion(human_reaches(REACHES_SEED, REACHES_S), low, high)
+    motions = {SLOW: slow, QUICK: moves(low, high, limits)}
     return {
         name: Experiment(motion, arm, table=table, noise=False, soft_start=False, wait_s=WAIT_TICKS * TICK_S)
         for name, motion in motions.items()
@@ -301,11 +301,16 @@ def doubt_other_table(given: ParameterTable, logged: ParameterTable | None, name
             return
 
 
-def doubt_other_board(arm: ArmParameters, facts: Identification | None, table: ParameterTable) -> Iterator[Doubt]:
+def doubt_other_board(
+    arm: ArmParameters,
+    facts: Identification | None,
+    table: ParameterTable,
+    limits: ModelLimits = TUNING_LIMITS.model,
+) -> Iterator[Doubt]:
     """Doubt a table whose period, supply or potentiometers are not those of the model and its logs."""
     yield from _doubt_period(facts, table)
-    yield from _doubt_supply(arm, table)
-    yield from _doubt_slopes(arm, table)
+    yield from _doubt_supply(arm, table, limits.same_supply)
+    yield from _doubt_slopes(arm, table, limits.same_slope)
 
 
 def _doubt_period(facts: Identification | None, table: ParameterTable) -> Iterator[Doubt]:
@@ -319,16 +324,16 @@ def _doubt_period(facts: Identification | None, table: ParameterTable) -> Iterat
         )
 
 
-def _doubt_supply(arm: ArmParameters, table: ParameterTable) -> Iterator[Doubt]:
+def _doubt_supply(arm: ArmParameters, table: ParameterTable, same_supply: float) -> Iterator[Doubt]:
     supply = table.supply_v
-    if abs(supply - arm.drive.supply) > SAME_SUPPLY * arm.drive.supply:
+    if abs(supply - arm.drive.supply) > same_supply * arm.drive.supply:
         yield Doubt(
             f"its drive.supply is {arm.drive.supply:g} V, but the board's supply_mv says {supply:g} V",
             "correct the one that is wrong (greywhale params set supply_mv=..., or the arm file and identify again)",
         )
 
 
-def _doubt_slopes(arm: ArmParameters, table: ParameterTable) -> Iterator[Doubt]:
+def _doubt_slopes(arm: ArmParameters, table: ParameterTable, same_slope: float) -> Iterator[Doubt]:
     for side, bank in (("leader", arm.leader_pots), ("follower", arm.follower_pots)):
         for joint, pot in enumerate(bank.joint):
             scale = f"{side}{joint}.scale"
@@ -336,7 +341,7 @@ def _doubt_slopes(arm: ArmParameters, table: ParameterTable) -> Iterator[Doubt]:
                 continue
             track = table.physical(scale) * CONVERTER_SPAN
             wanted = pot.direction * pot.track
-            if abs(track - wanted) > SAME_SLOPE * abs(wanted):
+            if abs(track - wanted) > same_slope * abs(wanted):
                 yield Doubt(
                     f"its {side} potentiometer {joint} turns {wanted:.3g} rad from end to end, but the board's "
                     f"{scale} makes it {track:.3g} rad",

@@ -8,10 +8,9 @@ from greywhale.arm import ArmParameters
 from greywhale.files.model import seals
 from greywhale.identify import sampled_plants
 from greywhale.loop import PLANT_COLUMNS
+from greywhale.tune.limits import TUNING_LIMITS, ModelLimits
 from greywhale.tune.model_checks import Doubt, Identification, with_one_uncertain
 
-# How far an arm and its own table may differ: relative, and its gaps (rad).
-SAME_VALUE, SAME_GAP = 1e-3, 1e-5
 # Quantities that the search may leave at next to nothing.
 OFTEN_NOTHING = ("half_gap", "pot_play", "pot_lag", "load_friction", "creep_velocity", "supply_resistance")
 REMEDY = "identify again, also after a change of the arm or its load"
@@ -21,9 +20,9 @@ UNSEALED = (
 )
 
 
-def doubt_edits(arm: ArmParameters, facts: Identification) -> list[Doubt]:
+def doubt_edits(arm: ArmParameters, facts: Identification, limits: ModelLimits = TUNING_LIMITS.model) -> list[Doubt]:
     """Doubt an arm whose numbers are no longer those that were identified."""
-    doubt = _doubt_plant(arm, facts) or _doubt_seals(arm, facts)
+    doubt = _doubt_plant(arm, facts, limits) or _doubt_seals(arm, facts)
     return [doubt] if doubt else []
 
 
@@ -38,14 +37,14 @@ def _doubt_seals(arm: ArmParameters, facts: Identification) -> Doubt | None:
     return Doubt(f"{' and '.join(tables)} in it was edited since the identification, or is of another model", REMEDY)
 
 
-def _doubt_plant(arm: ArmParameters, facts: Identification) -> Doubt | None:
+def _doubt_plant(arm: ArmParameters, facts: Identification, limits: ModelLimits) -> Doubt | None:
     """Numbers of joints that the file holds twice, so that the sentence can name one."""
     if facts.covariance is None or not facts.parameter:
         return None
     now, then = sampled_plants(with_one_uncertain(arm, facts, None), 2)
     # A gap or play of next to nothing is none, whatever its digits.
-    least = np.array([SAME_GAP if name.endswith(OFTEN_NOTHING) else 1e-12 for name in PLANT_COLUMNS])
-    differs = np.abs(now - then) > SAME_VALUE * np.maximum(np.abs(now), np.abs(then)) + least
+    least = np.array([limits.same_gap_rad if name.endswith(OFTEN_NOTHING) else 1e-12 for name in PLANT_COLUMNS])
+    differs = np.abs(now - then) > limits.same_value * np.maximum(np.abs(now), np.abs(then)) + least
     if not differs.any():
         return None
     place = int(np.argmax(differs))

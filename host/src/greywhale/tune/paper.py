@@ -113,10 +113,10 @@ class PaperMethod:
         task, table, plant = self.task, self.table, self.loops.plant
         best = self.found.best
         task.report("judging", 0.0)
-        margins = Margins(task.model.arm, table, plant[None], threads=task.threads)
+        margins = Margins(task.model.arm, table, plant[None], threads=task.threads, judging=task.judging)
         margins_before, margins_after = margins.check(task.before), margins.check(best)
         task.report("judging", 0.5)
-        held_out = judge_held_out(task.model.arm, table, plant, task.before, best, task.threads, task.floors)
+        held_out = judge_held_out(task.model.arm, table, plant, task.before, best, task.threads, task.judging)
         task.report("judging", 1.0)
         return Judgement(
             after=best.copy(),

@@ -2,8 +2,8 @@
 
 The least error is that of the ideal controller of `judge/floor.py`, which hears of the leader as late as a board does.
 It is worked out for every plant, once for each tuning. A joint may start at its floor, or so near to it that a division
-by the rest would magnify mere noise. So the room of a class is never less than LEAST_SHARE of its floor, and never less
-than LEAST_RAD.
+by the rest would magnify mere noise. So the room of a class is never less than `least_room_share` of its floor, and
+never less than `least_room_rad`.
 """
 
 from __future__ import annotations
@@ -16,21 +16,26 @@ from greywhale.base.types import Controllers, Floats
 from greywhale.protocol.firmware import TICK_S
 from greywhale.protocol.table import ParameterTable
 from greywhale.tune.judge.floor import follow_ideally
+from greywhale.tune.limits import TUNING_LIMITS, TuningLimits
 from greywhale.tune.search.objective import ErrorScale, error_of, follow
 from greywhale.tune.search.training import WAIT_S, TrainingMotion
 
-LEAST_SHARE = 0.1
-LEAST_RAD = 0.004
 # The mean age of a tick's conversions when the tick uses them.
 CONVERSIONS_S = 0.5e-3
 
 
-def scale_of(drills: Sequence[TrainingMotion], plants: Floats, before: Controllers, threads: int = 0) -> ErrorScale:
+def scale_of(
+    drills: Sequence[TrainingMotion],
+    plants: Floats,
+    before: Controllers,
+    threads: int = 0,
+    judging: TuningLimits = TUNING_LIMITS,
+) -> ErrorScale:
     """Floors, and errors and rattling of the controllers from before (4, 13), on every plant."""
-    late = lateness_s(drills[0].experiment.table)
-    floor = np.stack([_least_errors(drill, plants, late, threads) for drill in drills], axis=1)
-    found = follow(drills, plants, before[None], threads=threads)
-    least = np.maximum(LEAST_SHARE * floor, LEAST_RAD)
+    late, cost = lateness_s(drills[0].experiment.table), judging.cost
+    floor = np.stack([_least_errors(drill, plants, late, threads, judging) for drill in drills], axis=1)
+    found = follow(drills, plants, before[None], threads=threads, limits=cost)
+    least = np.maximum(cost.least_room_share * floor, cost.least_room_rad)
     return ErrorScale(floor, np.maximum(found.error[0] - floor, least), found.rattle[0])
 
 
@@ -40,9 +45,11 @@ def lateness_s(table: ParameterTable) -> float:
     return CONVERSIONS_S + low_pass + 0.5e-3 * table.period_ms
 
 
-def _least_errors(drill: TrainingMotion, plants: Floats, late_s: float, threads: int) -> Floats:
+def _least_errors(drill: TrainingMotion, plants: Floats, late_s: float, threads: int, judging: TuningLimits) -> Floats:
     """The ideal controller's error on every plant (plants, 4) in rad, measured like a candidate's."""
-    leader, angles = follow_ideally(drill.motion, plants, delay_s=late_s, wait_s=WAIT_S, threads=threads)
+    leader, angles = follow_ideally(
+        drill.motion, plants, delay_s=late_s, wait_s=WAIT_S, threads=threads, limits=judging.floor
+    )
     distance = np.abs(leader - angles)
     weight = drill.experiment.weight_s[:, None]
-    return error_of((weight * distance).sum(axis=1) / weight.sum(), np.square(distance).mean(axis=1))
+    return error_of((weight * distance).sum(axis=1) / weight.sum(), np.square(distance).mean(axis=1), judging.cost)

@@ -5,8 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
+from greywhale.base.limits import changed
 from greywhale.base.types import Controllers, NotedProgress
 from greywhale.files.trajectory import Trajectory
+from greywhale.tune.limits import TUNING_LIMITS, TuningLimits
 from greywhale.tune.model import Model
 
 
@@ -26,13 +28,13 @@ class TuningRequest:
     before: Controllers
     bounds: dict[str, tuple[float, float]]
     report: NotedProgress
-    floors: bool  # whether to work out the least possible error
-    on_trial: bool = False  # whether the arm itself will judge what is found
-    quiet: float = 1.0  # what divides the ripple that is allowed at rest
+    judging: TuningLimits = TUNING_LIMITS
     motion: Trajectory | None = None
 
     def facts(self) -> dict[str, Any]:
         """The facts that every journal must agree with."""
+        others = changed(self.judging, TUNING_LIMITS)
+        others = {name: value for name, value in others.items() if name not in ("quiet", "floors", "by_the_arm")}
         return {
             "model": self.model.name,
             "model_digest": self.model.digest,
@@ -40,6 +42,6 @@ class TuningRequest:
             "method": self.method,
             "budget": self.budget,
             "seed": self.seed,
-            "quiet": self.quiet,
+            "quiet": self.judging.quiet,
             "before": self.before.tolist(),
-        }
+        } | ({"judging": others} if others else {})

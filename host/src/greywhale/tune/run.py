@@ -12,6 +12,7 @@ from greywhale.optimise import METHODS as OPTIMISERS
 from greywhale.protocol.joints import ALL
 from greywhale.tune import default, paper
 from greywhale.tune.default import DefaultMethod
+from greywhale.tune.limits import TUNING_LIMITS, TuningLimits
 from greywhale.tune.method import Judgement, Method
 from greywhale.tune.model import Model
 from greywhale.tune.paper import PaperMethod
@@ -62,18 +63,15 @@ def tune(
     journal: Path | None = None,
     resume: bool = False,
     report: NotedProgress | None = None,
-    quiet: float = 1.0,
-    floors: bool = True,
-    on_trial: bool = False,
+    judging: TuningLimits = TUNING_LIMITS,
     motion: Trajectory | None = None,
 ) -> TuningResult:
     """Tune the four controllers of a model.
 
     `budget` counts sets of four candidates, each tried on all plants and motions. The first set is `start`, the
     controller from before: int32 (4, 13), by default that of the model's table. `journal` is a file that keeps every
-    cost; with `resume` the tuning goes on from it. `threads` (0: all cores) changes no bit. `quiet` divides the ripple
-    that is allowed at rest. `floors` False leaves out the held-out motions' floors. `on_trial`: the arm itself will
-    judge, so unrest on the model counts less. `motion` is a motion to train on in the place of the usual ones (default
+    cost; with `resume` the tuning goes on from it. `threads` (0: all cores) changes no bit. `judging` holds
+    all limits, and who has the last word. `motion` is a motion to train on in the place of the usual ones (default
     method only, without a journal). After an interrupt (KeyboardInterrupt) the best so far comes back at once, with
     `complete` False and not judged; if nothing was evaluated yet, the interrupt is raised again. Raises UserError.
     """
@@ -91,9 +89,7 @@ def tune(
         before=check_controllers(model.controllers if start is None else start)[0],
         bounds=dict(bounds or {}),
         report=report or show_no_progress,
-        quiet=quiet,
-        floors=floors,
-        on_trial=on_trial,
+        judging=judging,
         motion=motion,
     )
     return _run(task, PaperMethod(task) if method == "paper" else DefaultMethod(task), journal, resume)

@@ -22,12 +22,9 @@ from greywhale.identify import sampled_plants
 from greywhale.protocol import schema
 from greywhale.protocol.firmware import JOINTS
 from greywhale.protocol.table import ParameterTable
+from greywhale.tune.limits import TUNING_LIMITS, TravelLimits
 
 SAMPLES, SEED = 64, 0
-DEVIATIONS = 3.0  # of what the model leaves open
-LEAST_MARGIN = 0.25  # of the friction, which differs from place to place, and from day to day
-LEAST_V = 0.3  # 0 would mean that nothing is known
-MOST_OF_SUPPLY = 0.8  # a joint that stands gets all of the supply in the end, and the limit must lie below that
 GRAVITY = ("gravity_1", "gravity_12", "gravity_2")
 
 
@@ -85,7 +82,12 @@ class Travel:
         }
 
 
-def travel_of(arm: ArmParameters, table: ParameterTable, samples: int = SAMPLES) -> Travel | None:
+def travel_of(
+    arm: ArmParameters,
+    table: ParameterTable,
+    samples: int = SAMPLES,
+    limits: TravelLimits = TUNING_LIMITS.travel,
+) -> Travel | None:
     """The numbers of an identified arm for the board of `table`; None where the board's check is off, which stays so.
 
     The arm needs a covariance; with one sample its numbers are taken as exact, and it needs none.
@@ -97,14 +99,14 @@ def travel_of(arm: ArmParameters, table: ParameterTable, samples: int = SAMPLES)
     friction, gravity = _each(plants, "breakaway") / _torque_per_volt(plants), _gravity_volts(plants)
     spread = friction + np.abs(gravity - gravity[0])
     deviation = np.sqrt(np.sum((spread - spread[0]) ** 2, axis=0) / max(samples - 1, 1))
-    wanted = friction[0] + np.maximum(LEAST_MARGIN * friction[0], DEVIATIONS * deviation)
-    most = MOST_OF_SUPPLY * table.supply_v
+    wanted = friction[0] + np.maximum(limits.least_margin * friction[0], limits.sigmas * deviation)
+    most = limits.max_supply_share * table.supply_v
     damping, per_volt = _each(plants, "damping")[0], _torque_per_volt(plants)[0]
     inertia = _each(plants, "inertia")[0] + np.diagonal(Body.of(plants[0]).mass_matrix(np.zeros((1, JOINTS)))[0])
     return Travel(
         speed_per_volt=_tuple(np.divide(per_volt, damping, out=_kept(table, "speed_per_volt"), where=used)),
         time_constant_ms=_tuple(np.divide(1000.0 * inertia, damping, out=_kept(table, "time_constant"), where=used)),
-        breakaway_v=_tuple(np.where(used, np.clip(wanted, LEAST_V, most), _kept(table, "breakaway_volts"))),
+        breakaway_v=_tuple(np.where(used, np.clip(wanted, limits.least_v, most), _kept(table, "breakaway_volts"))),
         gravity_v=_tuple(_level_volts(plants[0])),
         note=_note(wanted, most),
     )

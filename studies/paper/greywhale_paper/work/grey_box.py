@@ -9,6 +9,7 @@ from greywhale.base.types import Floats, show_no_progress
 from greywhale.files.arm import load_arm
 from greywhale.protocol.table import ParameterTable
 from greywhale.tune.judge.floor import saturation_floor
+from greywhale.tune.limits import WITHOUT_FLOORS
 from greywhale.tune.model import Model, load_model
 from greywhale.tune.paper import BUDGET, LARGEST_SUPPLY_V, PaperMethod
 from greywhale.tune.request import TuningRequest
@@ -36,7 +37,7 @@ def supply_of(strategy: str) -> float:
 def tune_as_paper(model: Model, strategy: str, seed: int) -> tuple[PaperMethod, dict[str, Any]]:
     """The paper's search; what it found, as a board stores it, and its course."""
     task = TuningRequest(
-        model, strategy, "paper", BUDGET, seed, 1, printed("before_tuning"), {}, show_no_progress, floors=False
+        model, strategy, "paper", BUDGET, seed, 1, printed("before_tuning"), {}, show_no_progress, WITHOUT_FLOORS
     )
     method = PaperMethod(task)
     with TuningJournal(None, {}) as book:

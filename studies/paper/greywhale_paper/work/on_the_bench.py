@@ -11,6 +11,7 @@ from greywhale.files.arm import load_arm
 from greywhale.identify import IdentificationResult, identify
 from greywhale.identify.closed_loop import COMPARED_TICKS, Loop
 from greywhale.tune import tune
+from greywhale.tune.limits import WITHOUT_FLOORS
 from greywhale.tune.model import Model, load_model
 from greywhale_paper.work.arms import DEFAULT
 from greywhale_paper.work.bench import record_data, try_controllers
@@ -97,7 +98,7 @@ def follow_as_default(seed: int, seconds: float, period_ms: int, budget: int | N
     """The same with greywhale's own identification and tuning, at the board's own control period."""
     found = {"identified": identify_on_bench(seed, seconds, period_ms, "default", traces)}
     model = _model(found["identified"]["model"], seed)
-    outcome = tune(model, budget=budget, seed=seed, threads=1, start=printed("before_tuning"), floors=False)
+    outcome = tune(model, budget=budget, seed=seed, threads=1, start=printed("before_tuning"), judging=WITHOUT_FLOORS)
     _require_whole(outcome.complete)
     found["tuned"] = {
         "controllers": outcome.after.tolist(),

@@ -50,6 +50,7 @@ def learn(
     # Slow to import, and useless to those who only want a bench.
     from greywhale.identify import identify
     from greywhale.tune import tune
+    from greywhale.tune.limits import WITHOUT_FLOORS
     from greywhale.tune.model import load_model
     from greywhale.tune.report.controller_file import save
 
@@ -62,7 +63,7 @@ def learn(
     identified = time.monotonic()
     # The caller shows the model's doubts: a demo that stopped at one would show nothing.
     model = load_model(model_file, force=True)
-    tuning = tune(model, budget=budget, report=report, floors=False)
+    tuning = tune(model, budget=budget, report=report, judging=WITHOUT_FLOORS)
     save(tuning, controller_file)
     if not tuning.complete:
         raise KeyboardInterrupt

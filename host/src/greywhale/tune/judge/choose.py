@@ -8,18 +8,11 @@ import numpy as np
 import numpy.typing as npt
 
 from greywhale.base.types import Controllers, Floats
+from greywhale.tune.limits import TUNING_LIMITS, ChoiceLimits
 
 Judge = Callable[[Controllers], Floats]
 
-# If a joint costs this much more among the others than its best elsewhere, its other candidates are tried.
-WORSE = 1.03
-ROUNDS = 3
-# A joint that stays as it was feels its neighbours' new moves a little. No joint may lose more than this.
-FAIR = 1.01
-# Another way is tried if together the joints gain less than this share of what each could gain alone.
-ENOUGH = 0.5
-# A joint that fails gets so many other candidates, the best first.
-SECOND_CHANCES = 3
+ROUNDS = 3  # of trying other candidates of joints that disappoint
 
 
 class Remembering:
@@ -38,14 +31,16 @@ class Remembering:
         return np.stack([self._known[key] for key in keys])
 
 
-def choose(start: Controllers, contenders: Controllers, judge: Judge) -> tuple[Controllers, Floats, Floats]:
+def choose(
+    start: Controllers, contenders: Controllers, judge: Judge, limits: ChoiceLimits = TUNING_LIMITS.choice
+) -> tuple[Controllers, Floats, Floats]:
     """The best combination (4, 13), with the costs of `start` and of itself (4,).
 
-    No joint costs more than FAIR times what it costs in `start`. `contenders` (k, 4, 13) hold the k-th best of every
-    joint. Each row is judged as it stands, then every joint's best among the neighbours of `start`, then the best of
-    every joint together. Where a joint turns out worse among its new neighbours, its other candidates are tried there,
-    also the one that it had in `start`. If that gains little, the joints of `start` are exchanged one after the other
-    instead.
+    No joint costs more than `joint_slack` times what it costs in `start`. `contenders` (k, 4, 13) hold the k-th
+    best of every joint. Each row is judged as it stands, then every joint's best among the neighbours of `start`,
+    then the best of every joint together. Where a joint turns out worse among its new neighbours, its other
+    candidates are tried there, also the one that it had in `start`. If that gains little, the joints of `start` are
+    exchanged one after the other instead.
     """
     alone = np.repeat(start[None], len(start), axis=0)
     for joint in range(len(start)):
@@ -57,28 +52,33 @@ def choose(start: Controllers, contenders: Controllers, judge: Judge) -> tuple[C
     for _ in range(ROUNDS):
         now = judge(mixed[None])[0]
         rows, costs = np.concatenate([rows, mixed[None]]), np.concatenate([costs, now[None]])
-        disappointing = np.flatnonzero(now > WORSE * costs.min(axis=0))
+        disappointing = np.flatnonzero(now > limits.worse_ratio * costs.min(axis=0))
         if not disappointing.size:
             break
         tried = _exchange(mixed, np.concatenate([contenders, start[None]]), disappointing)
         outcome = judge(tried)
         rows, costs = np.concatenate([rows, tried]), np.concatenate([costs, outcome])
         mixed = tried[int(np.argmin(outcome.sum(axis=1)))]
-    fair = is_fair(costs, before)
+    fair = is_fair(costs, before, limits.joint_slack)
     best = int(np.argmin(np.where(fair, costs.sum(axis=1), np.inf)))
     chosen, cost = rows[best].copy(), costs[best]
     hoped_for = before.sum() - costs.min(axis=0).sum()
-    if before.sum() - cost.sum() < ENOUGH * hoped_for:
-        built, its = _build_up(start, before, before, contenders, judge)
+    if before.sum() - cost.sum() < limits.enough_gain_share * hoped_for:
+        built, its = _build_up(start, before, before, contenders, judge, limits.joint_slack)
         if its.sum() < cost.sum():
             chosen, cost = built, its
     # Once more: a joint may now accept a candidate that it could not accept among its old neighbours.
-    chosen, cost = _build_up(chosen, cost, before, contenders, judge)
+    chosen, cost = _build_up(chosen, cost, before, contenders, judge, limits.joint_slack)
     return chosen, before, cost
 
 
 def next_best(
-    after: Controllers, contenders: Controllers, joint: int, judge: Judge, still: npt.NDArray[np.intp]
+    after: Controllers,
+    contenders: Controllers,
+    joint: int,
+    judge: Judge,
+    still: npt.NDArray[np.intp],
+    limits: ChoiceLimits = TUNING_LIMITS.choice,
 ) -> Controllers:
     """The controllers (n, 13) that a joint of `after` (4, 13) may have in the place of its own.
 
@@ -88,25 +88,25 @@ def next_best(
     rows[:, joint] = contenders[:, joint]
     costs = judge(rows).sum(axis=1)
     order = [k for k in np.argsort(costs, kind="stable") if not np.array_equal(contenders[k, joint], after[joint])]
-    tried = list(dict.fromkeys([*order[:SECOND_CHANCES], *still]))
+    tried = list(dict.fromkeys([*order[: limits.second_chances], *still]))
     chosen: Controllers = contenders[tried, joint]
     return chosen
 
 
-def is_fair(costs: Floats, before: Floats) -> npt.NDArray[np.bool_]:
+def is_fair(costs: Floats, before: Floats, slack: float) -> npt.NDArray[np.bool_]:
     """Whether no joint loses, of costs (..., 4)."""
-    fair: npt.NDArray[np.bool_] = np.all(costs <= FAIR * before, axis=-1)
+    fair: npt.NDArray[np.bool_] = np.all(costs <= slack * before, axis=-1)
     return fair
 
 
 def _build_up(
-    chosen: Controllers, cost: Floats, before: Floats, contenders: Controllers, judge: Judge
+    chosen: Controllers, cost: Floats, before: Floats, contenders: Controllers, judge: Judge, slack: float
 ) -> tuple[Controllers, Floats]:
     """`chosen`, with one joint after the other exchanged for the fair candidate that lowers the sum most."""
     for joint in range(len(chosen)):
         tried = _exchange(chosen, contenders, np.array([joint]))
         costs = judge(tried)
-        sums = np.where(is_fair(costs, before), costs.sum(axis=1), np.inf)
+        sums = np.where(is_fair(costs, before, slack), costs.sum(axis=1), np.inf)
         best = int(np.argmin(sums))
         if sums[best] < cost.sum():
             chosen, cost = tried[best], costs[best]

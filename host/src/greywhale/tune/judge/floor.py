@@ -39,21 +39,7 @@ from greywhale.loop import leader_slices, plant_row
 from greywhale.loop.leader import SLICE_S, SLICES_PER_TICK
 from greywhale.measure.runs import resting
 from greywhale.protocol.firmware import JOINTS
-
-# A floor below this (rad^2) may be mere backlash (some mrad), unless the bound says that it is the supply; one below a
-# millirad is nothing that a potentiometer could tell.
-_BACKLASH, _LEAST = 1e-4, 1e-6
-
-# The ideal law's open numbers: brake (share), settle (s), lead (share), pull (share); see host/native/ideal/law.h.
-# A finer search finds 0.1 % at most.
-_GRID = list(itertools.product((1.0,), (0.001, 0.004), (0.0, 1.0), (0.0, 1.0)))
-_BRAKES = (0.85, 0.95, 1.1, 1.25)  # tried for one joint after the other
-_NOTHING_TO_GAIN = 1e-4  # rad^2 in total
-
-_REST_S, _REST_RAD = 0.3, 0.004
-# The follower counts as waiting for the leader when it is this close to it and this slow. Otherwise a move gives no
-# bound.
-_WAITING_RAD, _WAITING_RAD_S = 0.01, 0.05
+from greywhale.tune.limits import TUNING_LIMITS, FloorLimits
 
 
 @dataclass(frozen=True)
@@ -65,6 +51,7 @@ class Floor:
     time_s: Floats = field(repr=False)  # (ticks,)
     leader: Floats = field(repr=False)  # (ticks, 4) rad
     angles: Floats = field(repr=False)  # (ticks, 4) rad
+    limits: FloorLimits = field(default=TUNING_LIMITS.floor, repr=False)
 
     @property
     def total(self) -> float:
@@ -74,7 +61,8 @@ class Floor:
     def limited(self) -> tuple[bool, ...]:
         """For each joint, then for all: whether the supply keeps the error from zero."""
         each = [*zip(self.mse, self.bound, strict=True), (self.mse.sum(), self.bound.sum())]
-        return tuple(bool(floor >= _BACKLASH or 2.0 * bound >= floor >= _LEAST) for floor, bound in each)
+        backlash, tellable = self.limits.backlash_rad2, self.limits.tellable_rad2
+        return tuple(bool(floor >= backlash or 2.0 * bound >= floor >= tellable) for floor, bound in each)
 
     def multiple(self, mse: Floats) -> tuple[float | None, ...]:
         """Each joint's error as a multiple of the floor, then the total's; None where the supply does not limit it."""
@@ -90,6 +78,7 @@ def saturation_floor(
     wait_s: float = 1.5,
     resample: bool = False,
     threads: int = 0,
+    limits: FloorLimits = TUNING_LIMITS.floor,
 ) -> Floor:
     """The floor of a motion (or angles in every slice of 250 us) on an arm or a plant row (columns,).
 
@@ -97,22 +86,28 @@ def saturation_floor(
     the supply. The rest is as in Experiment.
     """
     loop = _loop_of(motion, arm, delay_s, wait_s, resample, threads)
-    tunings = _best(loop)
+    tunings = _best(loop, limits)
     mse, angles = loop.run(tunings[None], keep=True)
-    bound = np.array([_bound(loop, joint, tunings) for joint in range(JOINTS)])
+    bound = np.array([_bound(loop, joint, tunings, limits) for joint in range(JOINTS)])
     time_s: Floats = np.arange(len(loop.leader), dtype=np.float64) * SLICE_S * SLICES_PER_TICK
-    return Floor(mse[0], bound, time_s, loop.leader, angles[0])
+    return Floor(mse[0], bound, time_s, loop.leader, angles[0], limits)
 
 
 def follow_ideally(
-    motion: Trajectory, plants: Floats, *, delay_s: float, wait_s: float, threads: int = 0
+    motion: Trajectory,
+    plants: Floats,
+    *,
+    delay_s: float,
+    wait_s: float,
+    threads: int = 0,
+    limits: FloorLimits = TUNING_LIMITS.floor,
 ) -> tuple[Floats, Floats]:
     """The leader's angles (ticks, 4) and the ideal controller's (plants, ticks, 4) in rad, as of `saturation_floor`.
 
     The law's open numbers are those of the first plant.
     """
     loops = [_loop_of(motion, plant, delay_s, wait_s, False, threads) for plant in plants]
-    tunings = _best(loops[0])[None]
+    tunings = _best(loops[0], limits)[None]
     return loops[0].leader, np.stack([loop.run(tunings, keep=True)[1][0] for loop in loops])
 
 
@@ -177,19 +172,22 @@ class _Loop:
         return mse, angles
 
 
-def _best(loop: _Loop) -> Floats:
-    """The tunings (4, 4) of least total error."""
-    tried = np.repeat(np.array(_GRID)[:, None, :], JOINTS, axis=1)
+def _best(loop: _Loop, limits: FloorLimits) -> Floats:
+    """The tunings (4, 4) of least total error. The ideal law's open numbers are brake (share), settle (s), lead (share)
+    and pull (share); see host/native/ideal/law.h.
+    """
+    grid = list(itertools.product((1.0,), limits.tried_settling_s, (0.0, 1.0), (0.0, 1.0)))
+    tried = np.repeat(np.array(grid)[:, None, :], JOINTS, axis=1)
     totals = loop.run(tried)[0].sum(axis=1)
     best: Floats = tried[totals.argmin()]
     least = totals.min()
     rigid = rigid_joints(loop.plant)
     # The pitch joints pull at each other most, so they go first.
-    for joint in (1, 2, 0, 3) if least > _NOTHING_TO_GAIN else ():
+    for joint in (1, 2, 0, 3) if least > limits.nothing_to_gain_rad2 else ():
         if rigid[joint]:
             continue
-        tried = np.repeat(best[None], len(_BRAKES), axis=0)
-        tried[:, joint, 0] = _BRAKES
+        tried = np.repeat(best[None], len(limits.tried_brakes), axis=0)
+        tried[:, joint, 0] = limits.tried_brakes
         totals = loop.run(tried)[0].sum(axis=1)
         if totals.min() < least:
             best, least = tried[totals.argmin()], totals.min()
@@ -207,10 +205,10 @@ class _Move:
     furthest: float
 
 
-def _moves(leader: Floats) -> list[_Move]:
+def _moves(leader: Floats, limits: FloorLimits) -> list[_Move]:
     """The moves of one joint out of a rest."""
-    window = round(_REST_S / (SLICE_S * SLICES_PER_TICK))
-    rest = resting(leader, window, _REST_RAD)
+    window = round(limits.rest_s / (SLICE_S * SLICES_PER_TICK))
+    rest = resting(leader, window, limits.rest_rad)
     departures = []
     for left in np.flatnonzero(rest[:-1] & ~rest[1:]) + 1:
         origin = float(np.median(leader[left - window : left]))
@@ -226,10 +224,10 @@ def _moves(leader: Floats) -> list[_Move]:
     ]
 
 
-def _bound(loop: _Loop, joint: int, tunings: Floats) -> float:
+def _bound(loop: _Loop, joint: int, tunings: Floats, limits: FloorLimits) -> float:
     """The squared way that the leader is ahead of a joint at full voltage, over all moves; see the head."""
     leader = loop.leader[:, joint]
-    moves = _moves(leader)
+    moves = _moves(leader, limits)
     direction, until = np.zeros(len(leader), dtype=np.int8), np.zeros(len(leader))
     stops = [loop.plant[column(f"stop_{side}", joint)] for side in ("min", "max")]
     for move in moves:
@@ -240,14 +238,14 @@ def _bound(loop: _Loop, joint: int, tunings: Floats) -> float:
     late = loop.late // SLICES_PER_TICK  # rounded down: the joint may leave earlier, which only lowers the bound
     each = np.repeat(np.roll(direction, late), SLICES_PER_TICK), np.repeat(np.roll(until, late), SLICES_PER_TICK)
     angles = loop.chase(joint, tunings, *each)
-    return sum(_sum_lead(move, leader, angles) for move in moves) / len(leader)
+    return sum(_sum_lead(move, leader, angles, limits) for move in moves) / len(leader)
 
 
-def _sum_lead(move: _Move, leader: Floats, angles: Floats) -> float:
+def _sum_lead(move: _Move, leader: Floats, angles: Floats, limits: FloorLimits) -> float:
     """The sum of squares (rad^2) by which the leader of one move is ahead; 0 where the joint was not waiting for it."""
     start = move.start
     speed = (angles[start] - angles[start - 1]) / (SLICE_S * SLICES_PER_TICK) if start else 0.0
-    if abs(angles[start] - move.origin) > _WAITING_RAD or abs(speed) > _WAITING_RAD_S:
+    if abs(angles[start] - move.origin) > limits.waiting_rad or abs(speed) > limits.waiting_rad_s:
         return 0.0
     run = angles[start : move.stop] - angles[start] + move.origin
     there = np.flatnonzero(move.side * (run - move.furthest) >= 0.0)

@@ -21,6 +21,7 @@ from greywhale.measure.evaluate import EvaluationFacts
 from greywhale.protocol.joints import Joints
 from greywhale.protocol.table import ParameterTable
 from greywhale.tune.judge.floor import Floor, saturation_floor
+from greywhale.tune.limits import TUNING_LIMITS, TuningLimits
 from greywhale.tune.search.training import clip_motion, fit_motion, reach
 
 WAIT_S = 1.5
@@ -94,22 +95,25 @@ def judge_held_out(
     before: Controllers,
     after: Controllers,
     threads: int = 0,
-    floors: bool = True,
+    judging: TuningLimits = TUNING_LIMITS,
 ) -> tuple[HeldOut, ...]:
     """Evaluate both controllers (4, 13) on one plant (columns,), in the bench's own arithmetic, with sensor noise."""
     judged = []
-    for name, motion in motions(*reach(arm, table, plant[None])).items():
+    for name, motion in motions(*reach(arm, table, plant[None], judging.training)).items():
         experiment = Experiment(motion, arm, table=table, seed=7, wait_s=WAIT_S)
         result = experiment.run_exact(np.stack([before, after]), plant, every=EVERY, threads=threads)
         leader = experiment.leader[::EVERY]
         angles = result.angles.astype(np.float64)
+        floor = None
+        if judging.floors:
+            floor = saturation_floor(motion, plant, wait_s=WAIT_S, threads=threads, limits=judging.floor)
         judged.append(
             HeldOut(
                 name=name,
                 motion=motion,
                 before=_evaluate(name, result.time_s, leader, angles[0], arm.joints_in_use),
                 after=_evaluate(name, result.time_s, leader, angles[1], arm.joints_in_use),
-                floor=saturation_floor(motion, plant, wait_s=WAIT_S, threads=threads) if floors else None,
+                floor=floor,
                 time_s=result.time_s,
                 leader=leader,
                 angles_before=angles[0],

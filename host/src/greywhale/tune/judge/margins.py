@@ -3,8 +3,8 @@
 Different means half or twice the loop gain, one more control period of delay, or softer gear teeth than the model has
 (recordings show stiffness least of all, and backlash hunts on it).
 
-The leader makes large moves and stops. From SETTLE_S after each stop on, the follower must not hunt, and its duty must
-not chatter. A single overshoot, or creeping to the target, is neither. While the leader moves, in all classes of
+The leader makes large moves and stops. From `settle_s` after each stop on, the follower must not hunt, and its duty
+must not chatter. A single overshoot, or creeping to the target, is neither. While the leader moves, in all classes of
 training motions, the follower must not rattle, and its duty must not chatter more than a gear that moves bears.
 `measure/swings.py` says what each of these words is.
 """
@@ -35,29 +35,21 @@ from greywhale.measure.swings import (
 )
 from greywhale.protocol.firmware import JOINTS, TICK_S
 from greywhale.protocol.table import ParameterTable
+from greywhale.tune.limits import TUNING_LIMITS, MarginLimits, TuningLimits
 from greywhale.tune.search.objective import follow, pair_with_plants
-from greywhale.tune.search.training import EDGE_S, RATE_HZ, centre, reach, training_motions
+from greywhale.tune.search.training import RATE_HZ, centre, reach, training_motions
 
-SETTLE_S = 1.0
-WAIT_S = 0.2
+WAIT_S = 0.2  # before a motion begins
+_MOVING_SEED = 50  # of sensor noise that no search hears
 
-# Loop gains as factors of every joint's torque per volt.
+# Loop gains are factors of every joint's torque per volt.
 AT_REST = "at rest"
+HALF = "half the loop gain"
 TWICE = "twice the loop gain"
-GAINS = {AT_REST: 1.0, "half the loop gain": 0.5, TWICE: 2.0}
 DELAY = "one period more delay"
 TEETH = "softer gear teeth"
 MOVING = "while moving"
-SCENARIOS = (*GAINS, TEETH, DELAY, MOVING)
-SOFTER, LESS_DAMPED = 4.0, 8.0
-# Where the leader stops, as shares of a joint's reach. All joints move together, so all are shaken.
-STOPS = (0.8, -0.2)
-REST_S = 2.2  # the last 1.2 s of it are judged
-REST_LONG_S = 4.0
-# A search keeps clear of the border: its gains are further off, and smaller swings and less chatter already cost.
-SEARCH_BEYOND = 1.15
-SEARCH_CHATTER = 0.7
-SEARCH_RIPPLE = 0.9
+SCENARIOS = (AT_REST, HALF, TWICE, TEETH, DELAY, MOVING)
 
 
 class MarginFacts(TypedDict):
@@ -137,20 +129,24 @@ class Margins:
         plants: Floats,
         *,
         threads: int = 0,
-        rest_s: float = REST_S,
+        rest_s: float | None = None,
         searching: bool = False,
         seed: int = 0,
         noise: int = 0,
+        judging: TuningLimits = TUNING_LIMITS,
     ) -> None:
-        low, high = reach(arm, table, plants)
-        period = table.period_ms
-        motion = stops(low, high, rest_s)
+        """Rests last `rest_s`, or as long as in the first search."""
+        low, high = reach(arm, table, plants, judging.training)
+        period, limits = table.period_ms, judging.margins
+        rest_s = limits.rest_s if rest_s is None else rest_s
+        motion = stops(low, high, rest_s, judging)
+        self._judging = judging
         self.plants = plants
         self._arm, self._table, self._seed = arm, table, 100 * seed + _MOVING_SEED + noise
         self._threads = threads
         self._cycle = SEARCH_CYCLE if searching else LIMIT_CYCLE
-        self._beyond = SEARCH_BEYOND if searching else 1.0
-        self._rests = rest_ticks(rest_s)
+        self._beyond = limits.search_beyond if searching else 1.0
+        self._rests = rest_ticks(rest_s, judging)
         common: dict[str, Any] = {
             "table": table,
             "seed": noise_seed(seed, noise),
@@ -176,7 +172,7 @@ class Margins:
     def _unrest(self, controllers: Controllers, exact: bool) -> dict[str, Unrest]:
         """The same, simulated."""
         plants = len(self.plants)
-        variants = variants_of(self.plants, self._beyond)
+        variants = variants_of(self.plants, self._beyond, self._judging.margins)
         prompt = self._run(self._prompt, controllers, np.concatenate(list(variants.values())), exact)
         found = {
             name: _part(prompt, slice(number * plants, (number + 1) * plants)) for number, name in enumerate(variants)
@@ -225,8 +221,9 @@ class Margins:
 
     def _check_moving(self, controllers: Controllers) -> list[Margin]:
         """A verdict for each joint on the training motions, with other sensor noise than in a search."""
-        motions = training_motions(self._arm, self._table, self.plants, self._seed)
-        found = follow(motions, self.plants, controllers[None], exact=True, threads=self._threads)
+        judging = self._judging
+        motions = training_motions(self._arm, self._table, self.plants, self._seed, judging.training)
+        found = follow(motions, self.plants, controllers[None], exact=True, threads=self._threads, limits=judging.cost)
         # The worst class counts.
         rattle, chatter = found.rattle[0].max(axis=1), found.chatter[0].max(axis=1)
         failing = (rattle >= RATTLE_MOVING_RAD) | (chatter > CHATTER_MOVING_HZ)
@@ -244,28 +241,20 @@ class Margins:
         ]
 
 
-_MOVING_SEED = 50  # of sensor noise that no search hears
-# The leader rests this long before its first move.
-_FIRST_S = 0.2
-# What a search pays, as shares of what is possible: for a limit cycle, for each rad/s of swinging in it, and for each
-# CHATTER_AT_REST_HZ of chatter; for ripple at rest as a share of what is allowed, and for what is beyond that.
-TRAVEL_PRICE = 0.5
-CHATTER_PRICE = 0.03
-FAIL_PRICE = 0.15
-TEETH_PRICE = 0.08  # of a failure with softer teeth: what no recording shows well is no reason to follow badly
-RIPPLE_PRICE = 0.05
-LOUD_PRICE = 1.0
-LOST_PRICE = 10.0
-
-
-def penalty(found: dict[str, Unrest], quiet_v: Floats, fail_price: float = FAIL_PRICE) -> Floats:
-    """What candidates pay (n, 4), mostly for scenarios that fail; `quiet_v` (4,) is the ripple that is allowed."""
+def penalty(
+    found: dict[str, Unrest], quiet_v: Floats, limits: MarginLimits = TUNING_LIMITS.margins, *, strict: bool = False
+) -> Floats:
+    """What candidates pay (n, 4), mostly for scenarios that fail; `quiet_v` (4,) is the ripple that is allowed. With
+    `strict` a failure costs more.
+    """
+    fail_price = limits.strict_fail_price if strict else limits.fail_price
     share = found[AT_REST].ripple.mean(axis=1) / quiet_v
-    total = RIPPLE_PRICE * share + LOUD_PRICE * np.maximum(share - SEARCH_RIPPLE, 0.0)
+    beyond = np.maximum(share - limits.search_ripple_share, 0.0)
+    total = limits.ripple_price * share + limits.loud_price * beyond
     for scenario, one in found.items():
-        fails = (TEETH_PRICE if scenario == TEETH else fail_price) * one.fails
-        excess = np.maximum(one.chatter / CHATTER_AT_REST_HZ - SEARCH_CHATTER, 0.0)
-        price = TRAVEL_PRICE * one.travel + CHATTER_PRICE * excess + fails + LOST_PRICE * one.lost
+        fails = (limits.teeth_price if scenario == TEETH else fail_price) * one.fails
+        excess = np.maximum(one.chatter / CHATTER_AT_REST_HZ - limits.search_chatter_share, 0.0)
+        price = limits.travel_price * one.travel + limits.chatter_price * excess + fails + limits.lost_price * one.lost
         total = total + price.mean(axis=1)
     return np.asarray(total, dtype=np.float64)
 
@@ -275,22 +264,21 @@ def noise_seed(seed: int, noise: int) -> int:
     return 100 * seed + 31 + 2 * noise
 
 
-def rest_ticks(rest_s: float) -> list[tuple[int, int]]:
+def rest_ticks(rest_s: float, judging: TuningLimits = TUNING_LIMITS) -> list[tuple[int, int]]:
     """The first tick of each rest that is judged, and the first after it."""
+    limits, edge_s = judging.margins, judging.training.edge_s
     return [
-        (round(1e3 * (WAIT_S + (number + 1) * rest_s - rest_s + _FIRST_S + EDGE_S + SETTLE_S)),
-         round(1e3 * (WAIT_S + _FIRST_S + (number + 1) * rest_s)))
-        for number in range(len(STOPS))
+        (round(1e3 * (WAIT_S + (number + 1) * rest_s - rest_s + limits.first_s + edge_s + limits.settle_s)),
+         round(1e3 * (WAIT_S + limits.first_s + (number + 1) * rest_s)))
+        for number in range(len(limits.stop_shares))
     ]  # fmt: skip
 
 
-def variants_of(plants: Floats, beyond: float) -> dict[str, Floats]:
+def variants_of(plants: Floats, beyond: float, limits: MarginLimits = TUNING_LIMITS.margins) -> dict[str, Floats]:
     """The same plants in each scenario in which the arm differs, with gains further off by a factor."""
-    gains = {
-        name: gain if gain == 1.0 else gain * beyond if gain > 1.0 else gain / beyond for name, gain in GAINS.items()
-    }
+    gains = {AT_REST: 1.0, HALF: limits.half_gain / beyond, TWICE: limits.twice_gain * beyond}
     variants = {name: with_gain(plants, gain) for name, gain in gains.items()}
-    return {**variants, TEETH: with_softer_teeth(plants)}
+    return {**variants, TEETH: with_softer_teeth(plants, limits)}
 
 
 def with_gain(plants: Floats, factor: float) -> Floats:
@@ -300,22 +288,23 @@ def with_gain(plants: Floats, factor: float) -> Floats:
     return scaled
 
 
-def with_softer_teeth(plants: Floats) -> Floats:
+def with_softer_teeth(plants: Floats, limits: MarginLimits = TUNING_LIMITS.margins) -> Floats:
     """The same plants with softer gear teeth that damp less; rigid gears stay rigid."""
     softer = plants.copy()
-    softer[:, columns("stiffness")] /= SOFTER
-    softer[:, columns("mesh_damping")] /= LESS_DAMPED
+    softer[:, columns("stiffness")] /= limits.teeth_stiffness_divisor
+    softer[:, columns("mesh_damping")] /= limits.teeth_damping_divisor
     return softer
 
 
-def stops(low: Floats, high: Floats, rest_s: float) -> Trajectory:
+def stops(low: Floats, high: Floats, rest_s: float, judging: TuningLimits = TUNING_LIMITS) -> Trajectory:
     """Small moves of all joints and a rest after each."""
-    middle, size = centre(low, high)
-    total = _FIRST_S + rest_s * len(STOPS)
+    middle, size = centre(low, high, judging.training)
+    first_s, shares = judging.margins.first_s, judging.margins.stop_shares
+    total = first_s + rest_s * len(shares)
     time_s = np.arange(round(total * RATE_HZ) + 1) / RATE_HZ
     path = np.zeros(len(time_s))
     before = 0.0
-    for number, place in enumerate(STOPS):
-        path += (place - before) * minimum_jerk((time_s - _FIRST_S - number * rest_s) / EDGE_S)
+    for number, place in enumerate(shares):
+        path += (place - before) * minimum_jerk((time_s - first_s - number * rest_s) / judging.training.edge_s)
         before = place
     return Trajectory(time_s, middle + size * path[:, None])

@@ -17,10 +17,7 @@ from greywhale.base.types import Flags, Floats
 from greywhale.measure.swings import QUIET_SHARE
 from greywhale.protocol.firmware import JOINTS
 from greywhale.tune.judge.margins import AT_REST, TEETH, Margin, Unrest
-
-# Ripple is a figure of noise: the same controller differs so much from one noise to another; and by so much where its
-# neighbours, which move quicker, shake the joint.
-SAME, SHAKEN = 1.05, 1.25
+from greywhale.tune.limits import TUNING_LIMITS, ChoiceLimits
 
 
 @dataclass(frozen=True)
@@ -29,9 +26,16 @@ class Standard:
 
     failing: Mapping[str, npt.NDArray[np.int64]]
     quiet_v: Floats  # (4,) V rms, at rest
+    limits: ChoiceLimits = TUNING_LIMITS.choice
 
     @classmethod
-    def of(cls, before: tuple[Margin, ...], supply_v: float, level: float = 1.0) -> Self:
+    def of(
+        cls,
+        before: tuple[Margin, ...],
+        supply_v: float,
+        level: float = 1.0,
+        limits: ChoiceLimits = TUNING_LIMITS.choice,
+    ) -> Self:
         """The ripple may be that from before or QUIET_SHARE of the supply, whichever is larger, divided by `level`."""
         failing: dict[str, npt.NDArray[np.int64]] = {}
         ripple = np.zeros(JOINTS)
@@ -39,11 +43,12 @@ class Standard:
             failing.setdefault(margin.scenario, np.zeros(JOINTS, np.int64))[margin.joint] = margin.plants_failing
             if margin.scenario == AT_REST:
                 ripple[margin.joint] = margin.ripple_v
-        return cls(failing, np.maximum(ripple, QUIET_SHARE * supply_v) / level)
+        return cls(failing, np.maximum(ripple, QUIET_SHARE * supply_v) / level, limits)
 
     def falls_short(self, unrest: Mapping[str, Unrest], kept: Flags) -> Flags:
         """Which joints of which candidates do: (n, 4); so do `kept`, those with the controller from before."""
-        short: Flags = unrest[AT_REST].ripple.max(axis=1) > np.where(kept, SHAKEN, SAME) * self.quiet_v
+        most = np.where(kept, self.limits.shaken_ripple, self.limits.same_ripple)
+        short: Flags = unrest[AT_REST].ripple.max(axis=1) > most * self.quiet_v
         for scenario, found in unrest.items():
             if scenario == TEETH:
                 continue
@@ -55,7 +60,8 @@ class Standard:
         short = np.zeros(JOINTS, dtype=bool)
         for margin in margins:
             joint, scenario = margin.joint, margin.scenario
-            loud = scenario == AT_REST and margin.ripple_v > (SHAKEN if kept[joint] else SAME) * self.quiet_v[joint]
+            most = self.limits.shaken_ripple if kept[joint] else self.limits.same_ripple
+            loud = scenario == AT_REST and margin.ripple_v > most * self.quiet_v[joint]
             fails = scenario != TEETH and margin.plants_failing > self.failing[scenario][joint]
             short[joint] |= loud or fails
         return short

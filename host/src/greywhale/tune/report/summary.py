@@ -5,12 +5,9 @@ from __future__ import annotations
 from greywhale.arm.parameters import JOINT_NAMES
 from greywhale.measure import more_overshoot
 from greywhale.tune.judge.held_out import HeldOut
-from greywhale.tune.judge.margins import GAINS, Margin
+from greywhale.tune.judge.margins import AT_REST, Margin
+from greywhale.tune.limits import TUNING_LIMITS
 from greywhale.tune.result import TuningResult
-
-# From this ratio on a joint's error counts as worse than before; a smaller change is noise.
-WORSE = 1.02
-(AS_IT_IS,) = (name for name, gain in GAINS.items() if gain == 1.0)
 
 
 def summary(outcome: TuningResult) -> str:
@@ -41,7 +38,7 @@ def _motion(one: HeldOut) -> list[str]:
     lines = [f"{one.name:18} {'MSE [rad²]':>17} {'x floor':>7} {'at rest [rad]':>14} {'delay [s]':>14}"]
     for joint in one.before.joints_in_use:
         before, after = one.before.joints[joint], one.after.joints[joint]
-        worse = " WORSE" if after.mse > WORSE * before.mse else ""
+        worse = " WORSE" if after.mse > TUNING_LIMITS.choice.worse_in_report * before.mse else ""
         lines.append(
             f"{_joint(joint):17} {_pair(before.mse, after.mse, '.1e'):>18} {_multiple(one, joint):>7} "
             f"{_pair(before.steady_state_error, after.steady_state_error, '.3f'):>14} "
@@ -87,7 +84,7 @@ def ripples(outcome: TuningResult) -> list[str]:
     pairs = [
         (before, after)
         for before, after in zip(outcome.margins_before, outcome.margins, strict=False)
-        if after.scenario == AS_IT_IS
+        if after.scenario == AT_REST
     ]
     said = ", ".join(f"joint {now.joint} {was.ripple_v:.2f} -> {now.ripple_v:.2f}" for was, now in pairs)
     return [f"Ripple of the voltage at rest (above 20 Hz), V rms: {said}."] if said else []
@@ -115,9 +112,9 @@ def failing_margins(outcome: TuningResult) -> list[str]:
     for those that were no better before.
     """
     failing = [margin for margin in outcome.margins if not margin.holds]
-    different, lost = [one for one in failing if one.scenario != AS_IT_IS], outcome.lost_margins
+    different, lost = [one for one in failing if one.scenario != AT_REST], outcome.lost_margins
     groups = {
-        "NOT STEADY": [one for one in failing if one.scenario == AS_IT_IS],
+        "NOT STEADY": [one for one in failing if one.scenario == AT_REST],
         "Margins that do not hold": [one for one in different if one in lost],
         "Margins that did not hold before either": [one for one in different if one not in lost],
     }

@@ -3,23 +3,23 @@
 The error of a joint in a class is a length (rad), the sum of
 
 - the mean of |e|, with the weights of `training`;
-- RMS times the root of the mean of e^2, without weights: this is what the paper's tables measure, and it arises mostly
-  during moves.
+- `rms_weight` times the root of the mean of e^2, without weights: this is what the paper's tables measure, and it
+  arises mostly during moves.
 
 A class counts relative to what is possible in it (`ErrorScale`): 0 is the error of the ideal controller, 1 that of the
 controller from before. So fine following counts as much as large moves, whose error is ten times as large, but mostly
 cannot be helped. To this come, in every class,
 
-- RATTLE times the rattling (`rattle`, rad), on the same scale, and as much as LOUDER times that for what is beyond the
-  rattling from before;
-- CHATTER for every CHATTER_MOVING_HZ of duty swings beyond those that a moving gear bears, and SHAKING for every
-  RATTLE_MOVING_RAD of rattling: at these the margin while moving is lost;
-- EFFORT times the mean of |u| as a share of the supply, weighted like |e|.
+- `rattle_weight` times the rattling (`rattle`, rad), on the same scale, and `louder_weight` times that for what is
+  beyond the rattling from before;
+- `chatter_weight` for every CHATTER_MOVING_HZ of duty swings beyond those that a moving gear bears, `shaking_weight`
+  for every RATTLE_MOVING_RAD of rattling: at these the margin while moving is lost;
+- `effort_weight` times the mean of |u| as a share of the supply, weighted like |e|.
 
 The cost of the class is the root of this sum, because the last tenth of the way matters more than the first. Large
 moves count half, and the two classes of fine following the other half. Of the plants, the mean counts half, and the
 worst plant the other half.
-`margins` adds the price of a joint that does not come to rest.
+`margins` adds the price of a joint that does not come to rest. The weights are in `CostLimits`.
 """
 
 from __future__ import annotations
@@ -33,24 +33,13 @@ from greywhale.base.types import Controllers, Floats
 from greywhale.loop import Result
 from greywhale.measure.swings import CHATTER_MOVING_HZ, RATTLE_MOVING_RAD, chatter, rattle
 from greywhale.protocol.firmware import JOINTS
+from greywhale.tune.limits import TUNING_LIMITS, CostLimits
 from greywhale.tune.search.training import WAIT_S, TrainingMotion
 
-RMS = 6.0
-RATTLE = 9.0
-LOUDER = 3.0
-# Rattling below this (rad) is never louder: a board's angle has steps of a quarter of it.
-QUIET_RAD = 1e-3
-CHATTER = 0.3
-SHAKING = 1.0
-BEARABLE = 0.7  # of CHATTER_MOVING_HZ and RATTLE_MOVING_RAD
-EFFORT = 0.02
-WORST_SHARE = 0.5
-LOST = 1e3  # a motion that left the range of numbers
 
-
-def combine_plants(values: Floats) -> Floats:
-    """Combine values (n, k, 4) over k plants to (n, 4): half the mean and half the worst."""
-    mixed: Floats = (1.0 - WORST_SHARE) * values.mean(axis=1) + WORST_SHARE * values.max(axis=1)
+def combine_plants(values: Floats, worst_share: float = TUNING_LIMITS.cost.worst_plant_share) -> Floats:
+    """Combine values (n, k, 4) over k plants to (n, 4): a part of the mean, and a part of the worst."""
+    mixed: Floats = (1.0 - worst_share) * values.mean(axis=1) + worst_share * values.max(axis=1)
     return mixed
 
 
@@ -61,9 +50,9 @@ def pair_with_plants(controllers: Controllers, plants: Floats) -> tuple[Controll
     return np.ascontiguousarray(laws), np.ascontiguousarray(arms)
 
 
-def error_of(weighted: Floats, square: Floats) -> Floats:
+def error_of(weighted: Floats, square: Floats, limits: CostLimits = TUNING_LIMITS.cost) -> Floats:
     """The error in rad, of the weighted mean of |e| and the mean of e^2."""
-    return weighted + RMS * np.sqrt(square)
+    return weighted + limits.rms_weight * np.sqrt(square)
 
 
 @dataclass(frozen=True)
@@ -100,26 +89,29 @@ class Objective:
     plants: Floats
     scale: ErrorScale
     threads: int = 0
+    limits: CostLimits = TUNING_LIMITS.cost
 
     def costs(self, controllers: Controllers, exact: bool = False) -> Floats:
         """(n, 4), over all plants; without the price of unrest. `exact`: in the bench's own arithmetic."""
-        found = follow(self.drills, self.plants, controllers, exact=exact, threads=self.threads)
+        found = follow(self.drills, self.plants, controllers, exact=exact, threads=self.threads, limits=self.limits)
         supply = self.drills[0].experiment.table.supply_v
         weights = np.array([drill.importance for drill in self.drills])
-        weighted = weights[:, None] * relative_costs(found, self.scale, supply)
-        return combine_plants(weighted.sum(axis=2) / weights.sum())
+        weighted = weights[:, None] * relative_costs(found, self.scale, supply, self.limits)
+        return combine_plants(weighted.sum(axis=2) / weights.sum(), self.limits.worst_plant_share)
 
 
-def relative_costs(found: FollowingErrors, scale: ErrorScale, supply_v: float) -> Floats:
+def relative_costs(
+    found: FollowingErrors, scale: ErrorScale, supply_v: float, limits: CostLimits = TUNING_LIMITS.cost
+) -> Floats:
     """The cost of every class: (n, plants, classes, 4)."""
-    louder = np.maximum(found.rattle - np.maximum(scale.rattle, QUIET_RAD), 0.0)
+    louder = np.maximum(found.rattle - np.maximum(scale.rattle, limits.unheard_rad), 0.0)
     # One joint may come out a little below its floor, where a neighbour carries it.
     avoidable = np.maximum(found.error - scale.floor, 0.0)
-    length = avoidable + RATTLE * (found.rattle + LOUDER * louder)
-    unbearable = np.maximum(found.chatter / CHATTER_MOVING_HZ - BEARABLE, 0.0)
-    shaking = np.maximum(found.rattle / RATTLE_MOVING_RAD - BEARABLE, 0.0)
-    share = length / scale.room + CHATTER * unbearable + SHAKING * shaking + EFFORT * found.volts / supply_v
-    return np.sqrt(share)
+    length = avoidable + limits.rattle_weight * (found.rattle + limits.louder_weight * louder)
+    unbearable = np.maximum(found.chatter / CHATTER_MOVING_HZ - limits.bearable_share, 0.0)
+    shaking = np.maximum(found.rattle / RATTLE_MOVING_RAD - limits.bearable_share, 0.0)
+    share = length / scale.room + limits.chatter_weight * unbearable + limits.shaking_weight * shaking
+    return np.sqrt(share + limits.effort_weight * found.volts / supply_v)
 
 
 def follow(
@@ -129,6 +121,7 @@ def follow(
     *,
     exact: bool = False,
     threads: int = 0,
+    limits: CostLimits = TUNING_LIMITS.cost,
 ) -> FollowingErrors:
     """Simulate every candidate on every plant and motion; `exact`: in the bench's own arithmetic."""
     laws, arms = pair_with_plants(controllers, plants)
@@ -136,16 +129,17 @@ def follow(
     kept: list[list[Floats]] = [[], [], [], []]
     for drill in drills:
         run = drill.experiment.run_exact if exact else drill.experiment.run
-        for place, value in enumerate(_measures(drill, run(laws, arms, every=1, threads=threads))):
+        result = run(laws, arms, every=1, threads=threads)
+        for place, value in enumerate(_measures(drill, result, limits)):
             kept[place].append(value.reshape(shape))
     return FollowingErrors(*(np.stack(values, axis=2) for values in kept))
 
 
-def _measures(drill: TrainingMotion, result: Result) -> tuple[Floats, Floats, Floats, Floats]:
+def _measures(drill: TrainingMotion, result: Result, limits: CostLimits) -> tuple[Floats, Floats, Floats, Floats]:
     """Error, volts, rattling and chatter (n k, 4) of one motion."""
     experiment = drill.experiment
-    error = error_of(result.itae / drill.total_weight, result.mse)
-    error[result.diverged] = LOST
+    error = error_of(result.itae / drill.total_weight, result.mse, limits)
+    error[result.diverged] = limits.lost_cost
     shaken = rattle(result.angles, experiment.leader, 1, WAIT_S)
-    shaken[result.diverged] = LOST
+    shaken[result.diverged] = limits.lost_cost
     return error, result.itau / drill.total_weight, shaken, chatter(result.duties, 1, experiment.table.board)

@@ -28,6 +28,7 @@ from greywhale.fuzzy.settings import (
 )
 from greywhale.loop import CONTROLLER_COLUMNS
 from greywhale.protocol import schema
+from greywhale.tune.limits import TUNING_LIMITS, SpaceLimits
 
 STRATEGIES = ("mf", "sf", "both")
 
@@ -44,17 +45,6 @@ _UNIT = {"Kp": GAIN_UNIT, "Kd": GAIN_UNIT, "Ki": GAIN_UNIT, "Ku": 1000, CE_TICKS
 NARROWEST = LEAST_WIDTH / SET_UNIT
 NARROWEST_STATED = 0.01  # as people write it; stored, it is the next width above
 
-# Sizes that the default search may give to a scaling factor. Kp and Kd only stretch the axes of the sets.
-_GAIN_RANGE = {"Kp": (0.1, 10.0), "Kd": (1e-3, 5.0)}
-# Ki goes from none to the largest that the firmware takes. Below this size (V/(rad s)) an integral does next to nothing
-# in the time of a move, so sizes below it are searched as they are, and only those above it by their logarithm.
-_SLOW_KI = 30.0
-# Kp and Kd where they only stretch the sets: sets of full width then reach to 1 rad and 170 rad/s.
-_STRETCH = {"Kp": 1.0, "Kd": 0.3}
-# Ku may exceed the supply, at which the voltage is clipped in any case. Full voltage then comes before full height.
-KU_BEYOND = 2.0
-# The least Ku (V): enough for friction, and never 0, because such a controller would do nothing.
-_LEAST_KU = 3.0
 # Upper bounds of the paper's scaling factors. Ku = 20 V is visible in Table 8. For the others the paper prints none; 3
 # is the next whole number above all of Tables 8 and 9 (the largest is Ki = 2.072).
 _PAPER_GAIN_MAX = {"Kp": 3.0, "Kd": 3.0, "Ki": 3.0, "Ku": 20.0}
@@ -123,19 +113,28 @@ class Space:
     strategy: str
     variables: tuple[Variable, ...]
     base: Controllers
+    limits: SpaceLimits = TUNING_LIMITS.space
 
     @classmethod
-    def default(cls, strategy: str, base: Controllers, supply_mv: int, period_ms: int) -> Self:
+    def default(
+        cls,
+        strategy: str,
+        base: Controllers,
+        supply_mv: int,
+        period_ms: int,
+        limits: SpaceLimits = TUNING_LIMITS.space,
+    ) -> Self:
         """Widths from 0.01 to 1, and factors over decades by their logarithms, Ku up to twice the supply."""
         sets = [Variable(name, *_ordered(name, NARROWEST, 1.0), True) for name in SETS]
-        largest_ku = min(KU_BEYOND * supply_mv, LARGEST_KU_MV) / 1000.0
+        largest_ku = min(limits.ku_beyond * supply_mv, LARGEST_KU_MV) / 1000.0
         gains = [
-            *(Variable(name, *sizes, True) for name, sizes in _GAIN_RANGE.items()),
-            Variable("Ki", 0.0, largest_ki(period_ms), True, offset=_SLOW_KI),
-            Variable("Ku", min(_LEAST_KU, 0.5 * largest_ku), largest_ku, False),
+            Variable("Kp", *limits.kp_range, True),
+            Variable("Kd", *limits.kd_range, True),
+            Variable("Ki", 0.0, largest_ki(period_ms), True, offset=limits.slow_ki),
+            Variable("Ku", min(limits.least_ku_v, 0.5 * largest_ku), largest_ku, False),
             Variable(CE_TICKS, 1.0, float(MOST_CE_TICKS), True),
         ]
-        return cls(strategy, _chosen(strategy, sets, gains), base)
+        return cls(strategy, _chosen(strategy, sets, gains), base, limits)
 
     @classmethod
     def paper(cls, strategy: str, base: Controllers) -> Self:
@@ -195,7 +194,7 @@ class Space:
         """The part of the box in which the shape of the law differs.
 
         Sets are the same on both sides of zero. Where factors and sets are both searched, Kp and Kd are as near to
-        _STRETCH as their bounds allow, since they only stretch the axes of the sets.
+        their usual values as their bounds allow, since they only stretch the axes of the sets.
         """
         by_name = {variable.name: variable for variable in self.variables}
         for left, right in _PAIRS:
@@ -206,7 +205,7 @@ class Space:
                     del by_name[left]
         base = self.base.copy()
         if self.strategy == "both":
-            for name, usual in _STRETCH.items():
+            for name, usual in (("Kp", self.limits.usual_kp), ("Kd", self.limits.usual_kd)):
                 variable = by_name.pop(name)
                 base[:, variable.column] = round(float(np.clip(usual, variable.low, variable.high) * variable.unit))
         return replace(self, variables=tuple(by_name.values()), base=base)
