@@ -1,0 +1,116 @@
+"""No bare number stands where a limit belongs: the numbers of a room that judges are limits, or have a reason here."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+
+import pytest
+
+from tests.test_structure import SOURCE
+
+ROOMS = ("adapt", "commission", "tune")
+# Numbers that are no judgement, and why.
+COUNTS = "how much is computed: more would only take longer"
+SEED = "a seed of random numbers"
+ASKED = "what a person asks for"
+PAPER = "the paper's own setting or figures"
+ROUNDING = "keeps a division from 0"
+DRAWN = "how a motion is drawn and played"
+ALLOWED = {
+    "adapt/background.py": {"NICENESS": "the system's priority of a process"},
+    "adapt/change.py": {"SOFT_START_MS": "the shortest that the firmware takes"},
+    "adapt/gain.py": {"LEAST_GROUPS": "where the table of Student's t begins", "T_99": "a table of Student's t"},
+    "adapt/run.py": {"BUDGET": ASKED, "SECONDS": ASKED},
+    "adapt/stretch.py": {"LENGTH_S": "the unit in which an adaptation counts"},
+    "commission/arm_on_port.py": {"TRIES": "repeats where this computer was too busy; the arm is not judged"},
+    "commission/foresee.py": {"SEED": SEED, "LEAST": ROUNDING},
+    "commission/measures.py": {"LATEST_BEGIN_S": "how far the beginning of the check is looked for in its log"},
+    "commission/motions.py": {"RATE_HZ": DRAWN, "PEAK": "of a minimum-jerk move, by its formula", "REACHES_SEED": SEED},
+    "commission/request.py": {"ROUNDS": ASKED, "TRIALS": ASKED},
+    "commission/run.py": {"DESIGN_BUDGET": COUNTS},
+    "commission/search.py": {"LEAST_RAD2": ROUNDING},
+    "tune/default.py": {
+        "BUDGET": ASKED,
+        "SEARCH_PLANTS": COUNTS,
+        "FULL_PACK": COUNTS,
+        "SHORT_BUDGET": COUNTS,
+        "JUDGING_SEED": SEED,
+    },
+    "tune/judge/choose.py": {"ROUNDS": COUNTS},
+    "tune/judge/held_out.py": {"WAIT_S": DRAWN, "SEED": SEED, "EVERY": DRAWN},
+    "tune/judge/margins.py": {"WAIT_S": DRAWN, "_MOVING_SEED": SEED},
+    "tune/model.py": {"SAMPLES": ASKED, "MOST_SAMPLES": ASKED},
+    "tune/model_checks.py": {
+        "SPREAD_SAMPLES": COUNTS,
+        "ONE_BY_ONE_SAMPLES": COUNTS,
+        "REACHES_SEED": SEED,
+        "REACHES_S": DRAWN,
+        "WAIT_TICKS": DRAWN,
+        "CERTAIN": ROUNDING,
+        "CONVERTER_SPAN": "of the board's converter",
+    },
+    "tune/paper.py": dict.fromkeys(("AGENTS", "ITERATIONS", "PERIOD_MS", "LARGEST_SUPPLY_V", "WAIT_S"), PAPER),
+    "tune/possible.py": {"CONVERSIONS_S": "when a board converts"},
+    "tune/report/controller_file.py": {"DIGITS": "how a file writes a number"},
+    "tune/report/tables.py": dict.fromkeys(
+        ("PAPER_STEP_MSE", "PAPER_STEADY_STATE", "PAPER_DELAY", "PAPER_MULTI_STEP_MSE"), PAPER
+    ),
+    "tune/run.py": {"MOST_BUDGET": ASKED},
+    "tune/search/lockstep.py": {"TURNS": "the joints' numbers", "RANKS": COUNTS},
+    "tune/search/space.py": {"NARROWEST_STATED": "how people write the least width"},
+    "tune/search/training.py": {"RATE_HZ": DRAWN, "WAIT_S": DRAWN, "HUMAN_SEED": SEED},
+    "tune/travel.py": {"SAMPLES": COUNTS, "SEED": SEED},
+}
+
+
+def is_numeric(node: ast.expr) -> bool:
+    """Whether an expression is made of numbers alone: 0.3, -1, 1 << 16, (0.1, 0.2)."""
+    if isinstance(node, ast.Constant):
+        return isinstance(node.value, int | float) and not isinstance(node.value, bool)
+    if isinstance(node, ast.Tuple | ast.List):
+        return bool(node.elts) and all(map(is_numeric, node.elts))
+    if isinstance(node, ast.UnaryOp):
+        return is_numeric(node.operand)
+    return isinstance(node, ast.BinOp) and is_numeric(node.left) and is_numeric(node.right)
+
+
+def numbers(target: ast.expr, value: ast.expr) -> Iterator[str]:
+    """The names that an assignment gives to numbers; those of `A, B = 1, 2` one by one."""
+    if isinstance(target, ast.Name) and is_numeric(value):
+        yield target.id
+    elif isinstance(target, ast.Tuple) and isinstance(value, ast.Tuple):
+        for one, other in zip(target.elts, value.elts, strict=False):
+            yield from numbers(one, other)
+
+
+def constants(text: str) -> list[str]:
+    """The names of a module's numbers."""
+    found = []
+    for node in ast.parse(text).body:
+        if isinstance(node, ast.Assign):
+            found += [name for target in node.targets for name in numbers(target, node.value)]
+        elif isinstance(node, ast.AnnAssign) and node.value is not None:
+            found += list(numbers(node.target, node.value))
+    return found
+
+
+def test_a_modules_numbers_are_found() -> None:
+    assert constants("A = 1\nB: float = -0.5\nC, D = 2, 'x'\nE = (1, 2)\nF = A\nG = f(3)\ndef h():\n    K = 4\n") == [
+        *"ABCE"
+    ]
+
+
+@pytest.mark.parametrize("room", ROOMS)
+def test_no_bare_number_stands_where_a_limit_belongs(room: str) -> None:
+    """If one does: a judgement becomes a field of the room's limits.py; what is none gets a reason above."""
+    bare, used = [], set()
+    for path in sorted((SOURCE / "greywhale" / room).rglob("*.py")):
+        where = str(path.relative_to(SOURCE / "greywhale"))
+        for name in constants(path.read_text(encoding="utf-8")):
+            used.add((where, name))
+            if not where.startswith((f"{room}/limits.py", f"{room}/limits/")) and name not in ALLOWED.get(where, {}):
+                bare.append(f"{where}: {name}")
+    assert bare == []
+    allowed = {(where, name) for where, names in ALLOWED.items() if where.startswith(f"{room}/") for name in names}
+    assert allowed - used == set(), "these numbers are gone"
