@@ -9,7 +9,7 @@ import pytest
 
 from tests.test_structure import SOURCE
 
-ROOMS = ("adapt", "commission", "tune")
+ROOMS = ("adapt", "commission", "identify", "tune")
 # Numbers that are no judgement, and why.
 COUNTS = "how much is computed: more would only take longer"
 SEED = "a seed of random numbers"
@@ -17,6 +17,8 @@ ASKED = "what a person asks for"
 PAPER = "the paper's own setting or figures"
 ROUNDING = "keeps a division from 0"
 DRAWN = "how a motion is drawn and played"
+FINE = "how finely something is computed"
+BOARD = "of the board or its converter"
 ALLOWED = {
     "adapt/background.py": {"NICENESS": "the system's priority of a process"},
     "adapt/change.py": {"SOFT_START_MS": "the shortest that the firmware takes"},
@@ -30,6 +32,40 @@ ALLOWED = {
     "commission/request.py": {"ROUNDS": ASKED, "TRIALS": ASKED},
     "commission/run.py": {"DESIGN_BUDGET": COUNTS},
     "commission/search.py": {"LEAST_RAD2": ROUNDING},
+    "identify/bootstrap.py": {"LOGS": COUNTS, "STEPS": COUNTS, "MOMENTS": BOARD},
+    "identify/closed_loop.py": {
+        **dict.fromkeys(("LEAD_TICKS", "COMPARED_TICKS", "STEPS_PER_TICK", "BENCH_STEPS"), FINE),
+        "SEED": SEED,
+    },
+    "identify/data.py": {
+        **dict.fromkeys(("COUNTS", "ACTUATION_S", "CONVERSION_S"), BOARD),
+        **dict.fromkeys(("STEP_S", "FINE_STEP_S"), FINE),
+    },
+    "identify/default.py": {"DRAWS": COUNTS},
+    "identify/excite/design.py": {"BUDGET": ASKED, "MOST_BUDGET": ASKED, "SECONDS": ASKED, "SHRINKS": COUNTS},
+    "identify/excite/information.py": {"_STEP": FINE},
+    "identify/excite/limits.py": {"FARTHEST_RAD": ASKED, "FAMILY": COUNTS},
+    "identify/excite/multisine.py": {"SINES": DRAWN, "SHORTEST_S": ASKED, "LONGEST_S": ASKED},
+    "identify/excite/trial.py": dict.fromkeys(("EVERY", "STEPS_PER_TICK", "STILL_TICKS"), FINE),
+    "identify/fit.py": {"TOLERANCE": FINE},
+    "identify/judge.py": {"TINY": ROUNDING},
+    "identify/overlap.py": {"_RUN": "of a hash of rows", "_FACTOR": "of a hash of rows"},
+    "identify/pack_search.py": {"AGENTS": PAPER, "ITERATIONS": PAPER},
+    "identify/paper.py": {"LEAST": PAPER, "UPPER": PAPER},
+    "identify/samples.py": {"EVERY": COUNTS},
+    "identify/search.py": {
+        **dict.fromkeys(("SOME_WINDOWS", "WINDOW_STEPS", "PROBE_STEPS", "ROUNDS", "LOOP_STEPS"), COUNTS),
+        **dict.fromkeys(("SETTLINGS", "SETTLED_STEPS", "FITS", "SURE_TURNS"), COUNTS),
+        "LOOP_STEP_SCALE": FINE,
+    },
+    "identify/space.py": {
+        "COUPLED": "the joints' numbers",
+        "PITCH": "the joints' numbers",
+        "TEETH_S": "where a search starts",
+    },
+    "identify/steps.py": dict.fromkeys(("DAMPINGS", "LARGEST_STEP", "MOST_DAMPING", "ENOUGH"), FINE),
+    "identify/uncertainty.py": {"LARGEST_CONDITION": ROUNDING},
+    "identify/windows.py": {"SIDES": FINE, "START_PASSES": FINE},
     "tune/default.py": {
         "BUDGET": ASKED,
         "SEARCH_PLANTS": COUNTS,

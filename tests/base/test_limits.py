@@ -12,11 +12,18 @@ import greywhale
 from greywhale.adapt.limits import ADAPTATION_LIMITS
 from greywhale.base.limits import BY_JUDGEMENT, changed, limit, limits_in, markdown_table
 from greywhale.commission.limits import COMMISSIONING_LIMITS
+from greywhale.identify.limits import IDENTIFICATION_LIMITS
 from greywhale.measure.limits import SWING_LIMITS
 from greywhale.tune.limits import TUNING_LIMITS
 from tests.support.limits import attributes_read
 
-ROOMS = {"adapt": ADAPTATION_LIMITS, "commission": COMMISSIONING_LIMITS, "measure": SWING_LIMITS, "tune": TUNING_LIMITS}
+ROOMS = {
+    "adapt": ADAPTATION_LIMITS,
+    "commission": COMMISSIONING_LIMITS,
+    "identify": IDENTIFICATION_LIMITS,
+    "measure": SWING_LIMITS,
+    "tune": TUNING_LIMITS,
+}
 # What reads them beside the room that keeps them.
 READERS = {"measure": ("measure", "commission", "adapt")}
 PACKAGE = Path(greywhale.__file__).parent

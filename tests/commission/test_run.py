@@ -164,7 +164,7 @@ def test_without_a_model_the_arm_is_excited_and_identified(
         steps.append((step, [Path(log.name).stem for log in logs]))
         return Found()
 
-    def identify(logs, nominal, *, tables, seed, begin, report):  # type: ignore[no-untyped-def]
+    def identify(logs, nominal, *, tables, seed, begin, report, judging):  # type: ignore[no-untyped-def]
         begun.append(begin)
         return note("fit", logs, tables)
 

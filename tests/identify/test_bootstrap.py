@@ -8,8 +8,9 @@ import pytest
 from greywhale.arm import ArmParameters
 from greywhale.base.types import Floats
 from greywhale.files.arm import load_arm
-from greywhale.identify.bootstrap import SYSTEMATIC, WIDENED, read_motion, spread_covariance
+from greywhale.identify.bootstrap import read_motion, spread_covariance
 from greywhale.identify.combinations import combinations
+from greywhale.identify.limits import IDENTIFICATION_LIMITS
 from greywhale.identify.space import MOTOR, Space
 from greywhale.protocol.firmware import ANGLE_LSB
 
@@ -17,6 +18,8 @@ from greywhale.protocol.firmware import ANGLE_LSB
 SPACE = Space.of(load_arm("default"), ("load", "creep"), range(4))
 UNIT = 1e-5  # far below what the arm file leaves open
 FORMULA = np.diag(np.full(len(SPACE), UNIT**2))
+
+LIMITS = IDENTIFICATION_LIMITS.uncertainty
 
 
 def scatter(size: float, logs: int = 6) -> Floats:
@@ -34,7 +37,7 @@ def test_deviations_grow_with_the_scatter_and_never_fall_far_below_the_formula(t
     assert np.linalg.eigvalsh(found)[0] > 0.0
     np.testing.assert_allclose(found, found.T)
     deviations = np.sqrt(np.diag(found)) / UNIT
-    expected = np.sqrt(WIDENED * 9 / 7 * (3 * max(1.0, times**2) + 6 * times**2) / 9)
+    expected = np.sqrt(LIMITS.widened * 9 / 7 * (3 * max(1.0, times**2) + 6 * times**2) / 9)
     assert np.median(deviations) == pytest.approx(expected, rel=0.3)
     assert deviations.min() > 0.5
 
@@ -56,7 +59,9 @@ def test_numbers_with_several_optima_are_never_more_certain_than_fits_of_known_a
     space = Space.of(load_arm("default"), (*MOTOR, "coulomb", "gap", "drag", "teeth"), range(4))
     found = spread_covariance(1e-10 * np.eye(len(space)), np.full((6, len(space)), 1e-9), space)
     for index, one in enumerate(space.parameters):
-        least = min(SYSTEMATIC.get(one.kind, 0.0), 0.7 * space.doubts()[index])  # the arm file's doubt counts too
+        least = min(
+            dict(LIMITS.systematic).get(one.kind, 0.0), 0.7 * space.doubts()[index]
+        )  # the arm file's doubt counts too
         assert np.sqrt(found[index, index]) >= 0.8 * least
     roll, yaw, pitch = (space.names.index(f"joint{joint}.alpha") for joint in (3, 0, 1))
     assert found[roll, roll] > found[yaw, yaw] > found[pitch, pitch]

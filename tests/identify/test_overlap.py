@@ -39,8 +39,8 @@ def test_cuts_that_overlap_are_the_same_samples_and_neighbours_are_not(recorded:
 
 def test_rest_that_looks_the_same_does_not_count(recorded: Recorded) -> None:
     """Two recordings of a quiet bench begin with equal samples for seconds, before their motions differ."""
-    logs = [_after_rest(log, 6000) for log in (recorded.fit, recorded.second)]
-    assert not shares_samples(*logs)
+    one, other = (_after_rest(log, 6000) for log in (recorded.fit, recorded.second))
+    assert not shares_samples(one, other)
 
 
 def _after_rest(log: Log, count: int) -> Log:

@@ -14,7 +14,8 @@ from greywhale.base.errors import UserError
 from greywhale.files.arm import load_arm
 from greywhale.identify import IdentificationResult, identify
 from greywhale.identify.checks import check
-from greywhale.identify.data import LONGEST_GAP_S, prepare, windows_of
+from greywhale.identify.data import prepare, windows_of
+from greywhale.identify.limits import IDENTIFICATION_LIMITS
 from greywhale.loop import human_reaches, multi_steps
 from greywhale.protocol.table import ParameterTable
 from tests.identify.conftest import alone, rows, without
@@ -62,7 +63,7 @@ def test_lost_rows_neither_end_a_stretch_nor_look_like_another_period(
 
 
 def test_a_long_gap_ends_a_stretch_and_no_window_crosses_it(recorded: Recorded) -> None:
-    gap = round(2 * LONGEST_GAP_S * 1000)
+    gap = round(2 * IDENTIFICATION_LIMITS.data.longest_gap_s * 1000)
     kept = np.ones(len(recorded.fit.time), dtype=bool)
     kept[4000 : 4000 + gap] = False
     prepared = prepare(rows(recorded.fit, kept), 1)

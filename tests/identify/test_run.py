@@ -13,13 +13,16 @@ from greywhale.arm.plants import column
 from greywhale.files.arm import load_arm
 from greywhale.files.log.condition import Condition
 from greywhale.identify import IdentificationResult, identify, validated
+from greywhale.identify.excite import design
 from greywhale.identify.judge import CHANGED, FIT, SECOND, LogVerdict, judge, undecided_of, warnings_of
+from greywhale.identify.limits import IDENTIFICATION_LIMITS
 from greywhale.identify.uncertainty import LARGEST_CONDITION
 from greywhale.loop import human_reaches, plant_row
 from greywhale.protocol.table import ParameterTable
 from greywhale.tune.model import load_model
-from tests.identify.conftest import alone, first, rows
+from tests.identify.conftest import alone, first, rows, simulated_logs
 from tests.support.interrupts import ctrl_c_at
+from tests.support.limits import copy_of, reads_of
 from tools.support.recordings import Recorded, record
 
 
@@ -253,3 +256,30 @@ def test_second_round_is_as_good_as_the_arm_that_it_began_with(
         assert "as good as the model before, as far as noise lets tell" in text
         assert again.arm.name == outcome.arm.name
     assert "-" not in "".join(line.rpartition("   ")[2] for line in text.splitlines() if line.startswith("all joints"))
+
+
+@pytest.mark.slow
+def test_an_identification_reads_no_limits_but_those_that_it_was_handed(
+    shoulder: Recorded, white_box: ArmParameters, tables: list[ParameterTable]
+) -> None:
+    """Nor does what is validated afterwards, or the design of a motion."""
+    own, log = copy_of(IDENTIFICATION_LIMITS), first(shoulder.fit, 5.0)
+    with reads_of(IDENTIFICATION_LIMITS) as read, simulated_logs(1):
+        found = identify([log], white_box, validate=[shoulder.second], tables=tables, judging=own)
+        validated(found, [shoulder.changed], tables)
+        identify([log], white_box, tables=tables, method="gwo-woa", judging=own)
+        design(white_box, [0.0, 0.4, 0.0, 0.0], seconds=5.0, budget=2, judging=own).text()
+    assert read == set()
+
+
+@pytest.mark.slow
+def test_a_stricter_search_takes_fewer_orders(
+    shoulder: Recorded, white_box: ArmParameters, tables: list[ParameterTable]
+) -> None:
+    """An ablation is a loop: no code is patched."""
+    log, names = first(shoulder.fit, 5.0), []
+    for least in (0.01, 1e9):
+        strict = replace(IDENTIFICATION_LIMITS.search, min_improvement=least)
+        found = identify([log], white_box, tables=tables, judging=replace(IDENTIFICATION_LIMITS, search=strict))
+        names.append(found.found.order)
+    assert names[0] != names[1] == "motors"

@@ -11,7 +11,8 @@ import pytest
 from greywhale import _native
 from greywhale.arm import Arm, ArmParameters
 from greywhale.files.arm import default_arm
-from greywhale.identify.data import LIVELY_RAD, first_rows, prepare, some_windows, windows_of
+from greywhale.identify.data import first_rows, prepare, some_windows, windows_of
+from greywhale.identify.limits import IDENTIFICATION_LIMITS
 from greywhale.identify.space import MOTOR, Space
 from greywhale.identify.steps import WindowFit
 from greywhale.identify.windows import WindowResidual, take_off_starts
@@ -85,7 +86,7 @@ def test_of_many_windows_those_with_motion_stay_and_are_taken_evenly(recorded: R
     assert sum(map(len, few)) == pytest.approx(count // 2, abs=1)
     assert np.ptp(few[0]) > count // 2, "from all over the log"
     for first in first_rows(log)[few[1]]:
-        assert np.ptp(resting.follower[first : first + 500], axis=0).max() > LIVELY_RAD
+        assert np.ptp(resting.follower[first : first + 500], axis=0).max() > IDENTIFICATION_LIMITS.data.lively_rad
 
 
 def test_truth_explains_the_log_and_the_white_box_does_not(

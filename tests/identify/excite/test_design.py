@@ -8,7 +8,7 @@ import pytest
 from greywhale.base.errors import BAD_USAGE, UserError
 from greywhale.files.arm import load_arm
 from greywhale.identify.excite import Problem, design
-from greywhale.identify.excite.limits import MARGIN_RAD
+from greywhale.identify.limits import IDENTIFICATION_LIMITS
 from greywhale.loop import human_reaches
 from greywhale.protocol.table import ParameterTable
 from tools.support.recordings import random_arm
@@ -28,8 +28,8 @@ def test_a_design_tells_far_more_than_a_hand_and_is_safe_on_every_arm_of_its_fam
     tried, limits = made.judgement.tried, made.problem.limits
     assert len(tried.angles) == 16
     assert tried.lag.max() <= limits.lag
-    assert (tried.angles >= limits.low - MARGIN_RAD).all()
-    assert (tried.angles <= limits.high + MARGIN_RAD).all()
+    assert (tried.angles >= limits.low - IDENTIFICATION_LIMITS.excitation.margin_rad).all()
+    assert (tried.angles <= limits.high + IDENTIFICATION_LIMITS.excitation.margin_rad).all()
     assert np.array_equal(made.motion.angles[0], np.array(POSE))
     assert np.allclose(made.motion.angles[-1], POSE, atol=1e-12)
 

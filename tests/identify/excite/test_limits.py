@@ -9,9 +9,12 @@ from greywhale.arm import ArmParameters
 from greywhale.arm.plants import columns
 from greywhale.base.errors import BAD_USAGE, UserError
 from greywhale.files.arm import load_arm
-from greywhale.identify.excite.limits import MARGIN_RAD, REACH_RAD, family, limits_of, parse_range
+from greywhale.identify.excite.limits import family, limits_of, parse_range
+from greywhale.identify.limits import IDENTIFICATION_LIMITS
 from greywhale.loop import plant_row
 from greywhale.protocol.table import ParameterTable
+
+WANTED = IDENTIFICATION_LIMITS.excitation
 
 POSE = np.array([0.0, 0.45, -0.1, 0.0])
 
@@ -25,18 +28,18 @@ def table(**values: int) -> ParameterTable:
 
 def test_a_joint_moves_by_a_radian_to_either_side_unless_told_otherwise() -> None:
     limits = limits_of(load_arm("white_box"), DEFAULTS, POSE, {2: (-0.4, 0.6)})
-    assert np.allclose(limits.low, [-REACH_RAD, 0.45 - REACH_RAD, -0.4, -REACH_RAD])
-    assert np.allclose(limits.high, [REACH_RAD, 0.45 + REACH_RAD, 0.6, REACH_RAD])
+    assert np.allclose(limits.low, [-WANTED.reach_rad, 0.45 - WANTED.reach_rad, -0.4, -WANTED.reach_rad])
+    assert np.allclose(limits.high, [WANTED.reach_rad, 0.45 + WANTED.reach_rad, 0.6, WANTED.reach_rad])
 
 
 def test_the_boards_limits_and_the_arms_stops_are_kept_with_a_margin() -> None:
     arm = load_arm("white_box")
     narrow = table(joint0__limit_max=1024, joint1__limit_min=0)
     limits = limits_of(arm, narrow, POSE, {0: (-6.0, 6.0), 3: (-6.0, 6.0)})
-    assert limits.high[0] == pytest.approx(0.25 - MARGIN_RAD)
-    assert limits.low[1] == pytest.approx(MARGIN_RAD)
+    assert limits.high[0] == pytest.approx(0.25 - WANTED.margin_rad)
+    assert limits.low[1] == pytest.approx(WANTED.margin_rad)
     for joint in (0, 3):
-        assert limits.low[joint] >= arm.joint[joint].stops.min + MARGIN_RAD - 1e-12
+        assert limits.low[joint] >= arm.joint[joint].stops.min + WANTED.margin_rad - 1e-12
 
 
 def test_a_weaker_supply_means_slower_motion() -> None:

@@ -21,7 +21,7 @@ class ChangeLimits:
     )
     look_every_samples: int = limit(10, "samples", "a rest is looked for so often, which costs little time")
     rest_samples: int = limit(250, "samples", "leader and follower rest for so long before a set is changed")
-    still_rad: float = limit(0.02, "rad", "they stay within this meanwhile: a hand trembles")
+    still_rad: float = limit(0.02, "rad", "leader and follower stay within this while they rest: a hand trembles")
     close_rad: float = limit(
         0.12,
         "rad",
@@ -89,12 +89,13 @@ class ProposalLimits:
         "times the speed",
         "the search trains on the way back as well, quicker: a set that never needed more could have too little "
         "voltage for a person who hurries",
+        MEASURED_ON_ARMS,
     )
     block_s: int = limit(8, "s", "older stretches join the comparison so many at a time")
     same_arm_log: float = limit(
         0.4,
         "as a logarithm",
-        "they do while the model explains each joint's error in them as well as in the newest, up to this factor",
+        "older stretches join while the model explains each joint's error in them as in the newest, up to this factor",
     )
 
 
@@ -113,22 +114,24 @@ class DecisionLimits:
         "build up",
     )
     fit_s: int = limit(12, "s", "while another set than that from the start runs, the model is fitted to so much")
-    refit_every_s: int = limit(8, "s", "and so often")
+    refit_every_s: int = limit(8, "s", "it is fitted anew so often then")
     fit_valid_s: int = limit(12, "s", "a verdict needs a model that knows the arm until so long ago")
     max_trial_s: int = limit(60, "s", "a trial that says nothing by then ends")
     trial_swings_s: int = limit(20, "s", "so much of a trial is looked at for swings")
     window_s: int = limit(30, "s", "an excess counts over this time, half a minute")
-    max_excess: float = limit(0.20, "of the error", "over that time the error may exceed the start's by so much")
+    max_excess: float = limit(
+        0.20, "of the error", "the error may exceed that of the set from the start by so much over the window"
+    )
     alert_excess: float = limit(
         0.10,
         "of the error",
-        "a set on trial goes back at half of that, since it takes a stretch to see it; by chance alone half a minute "
+        "a set on trial goes back at this excess, since it takes a stretch to see it; by chance alone half a minute "
         "differs by some 0.05",
         MEASURED_ON_ARMS,
     )
     model_sigma: float = limit(0.04, "as a logarithm", "a model's ratio of two sets is wrong by this much")
     error_memory: float = limit(
-        0.5, "of the error", "and by this share of what the last promise was: each search fits the model anew"
+        0.5, "of the error", "so much of the last promise's error counts for the next: each search fits the model anew"
     )
     sigmas: float = limit(2.0, "standard deviations", "a proposal must be better by so many")
     min_gain: float = limit(0.03, "of the error", "a set is kept that is better by this for certain")

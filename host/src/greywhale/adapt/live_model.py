@@ -68,7 +68,7 @@ class LiveModel:
     def refit(self, stretches: Sequence[Stretch], table: ParameterTable, seed: int) -> LiveModel:
         """The same arm after these stretches; joints that they do not move stay as they were."""
         log, limits = log_of(stretches, table), self.limits.model
-        prepared = prepare(log, table["filter_shift"])
+        prepared = prepare(log, table["filter_shift"], self.limits.tuning.identification)
         moved = np.ptp(log.follower, axis=0) > limits.moved_rad
         joints = [joint for joint in self.arm.joints_in_use if moved[joint] and prepared.runs]
         if not joints:

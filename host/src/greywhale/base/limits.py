@@ -21,9 +21,8 @@ BY_JUDGEMENT = "by judgement"
 BY_DEFINITION = "by definition"
 BY_THE_FIRMWARE = "the firmware"
 MEASURED_ON_ARMS = "measured: simulated arms"
-MEASURED_IN_TRIALS = "measured: trials of a commissioning"
-MEASURED_IN_TIME = "measured: time and outcome of searches"
-THE_PAPER = "the paper"
+MEASURED_IN_TRIALS = "measured: trials of commissionings"
+MEASURED_IN_SEARCHES = "measured: tunings with several seeds"
 
 T = TypeVar("T")
 

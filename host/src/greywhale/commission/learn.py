@@ -99,7 +99,15 @@ class RoundTuner:
 
     def _find_model(self, fit: Evidence, report: NotedProgress) -> IdentificationResult:
         begin = self.begin if self.begin is not None and "covariance" in (self.begin.identification or {}) else None
-        found = identify(fit.logs, self.nominal, tables=fit.tables, seed=self.options.seed, begin=begin, report=report)
+        found = identify(
+            fit.logs,
+            self.nominal,
+            tables=fit.tables,
+            seed=self.options.seed,
+            begin=begin,
+            report=report,
+            judging=self.options.judging.tuning.identification,
+        )
         found.save(self.path)
         if not found.complete:
             raise KeyboardInterrupt

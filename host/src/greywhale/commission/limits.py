@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from greywhale.base.limits import MEASURED_IN_TIME, MEASURED_IN_TRIALS, MEASURED_ON_ARMS, limit
+from greywhale.base.limits import MEASURED_IN_TRIALS, MEASURED_ON_ARMS, limit
 from greywhale.measure.limits import SWING_LIMITS, SwingLimits
 from greywhale.tune.limits import BY_THE_ARM, TuningLimits
 
@@ -16,9 +16,9 @@ class MotionLimits:
     speed_share: float = limit(0.9, "of what a host can lead", "no move is quicker: a tenth to spare")
     edge_s: float = limit(0.04, "s", "a hand cannot jump")
     first_rad: float = limit(0.15, "rad", "the little first motion is no larger: nothing is known of the arm yet")
-    first_again_rad: float = limit(0.4, "rad", "that of joints which friction held in the first")
+    first_again_rad: float = limit(0.4, "rad", "the first motion once more, for joints that friction held")
     first_edge_s: float = limit(0.5, "s", "an edge of the first motion is slow")
-    first_hold_s: float = limit(0.7, "s", "and each of its stops long enough to arrive")
+    first_hold_s: float = limit(0.7, "s", "each of its stops is long enough to arrive")
     least_way_share: float = limit(
         0.25, "of the leader's way", "a joint that went less, or the other way, does not move freely"
     )
@@ -27,8 +27,10 @@ class MotionLimits:
         (0.9, -0.6, 0.3), "of the room", "stops of the moves; each joint begins at another one"
     )
     hold_s: float = limit(1.3, "s", "a stop of the moves")
-    rest_s: float = limit(2.2, "s", "their last one: long enough for a joint that breaks loose late")
-    reaches_s: float = limit(5.5, "s", "of reaches as a hand makes them")
+    rest_s: float = limit(
+        2.2, "s", "the last stop of the moves: long enough for a joint that breaks loose late", MEASURED_ON_ARMS
+    )
+    reaches_s: float = limit(5.5, "s", "how long the reaches last, which are as a hand makes them")
     reaches_share: float = limit(0.8, "of the room", "how far the reaches go")
     slow_s: float = limit(4.0, "s", "one slow swing to both sides, in which a joint rattles most easily")
     slow_share: float = limit(0.35, "of the room", "how far that swing goes")
@@ -36,8 +38,8 @@ class MotionLimits:
     still_shares: tuple[float, ...] = limit(
         (0.6, -0.5, 0.0), "of the room", "stops of every second joint while the others hold still"
     )
-    still_edge_s: float = limit(0.4, "s", "an edge meanwhile")
-    still_hold_s: float = limit(0.4, "s", "a stop meanwhile")
+    still_edge_s: float = limit(0.4, "s", "an edge of these moves")
+    still_hold_s: float = limit(0.4, "s", "a stop of these moves")
 
 
 @dataclass(frozen=True)
@@ -48,10 +50,13 @@ class RoundLimits:
         0.5, "of the error before", "another round follows while a joint's best is above this"
     )
     good_error_share: float = limit(
-        0.04, "of the error before", "a round's trials end when the joints' best together are below this"
+        0.04,
+        "of the error before",
+        "a round's trials end when the joints' best together are below this",
+        MEASURED_IN_TRIALS,
     )
-    min_gain: float = limit(0.1, "of the error", "or when they gained less than this")
-    trials_without_gain: int = limit(3, "trials", "in so many trials")
+    min_gain: float = limit(0.1, "of the error", "or when the last trials gained less than this", MEASURED_IN_TRIALS)
+    trials_without_gain: int = limit(3, "trials", "how many trials must gain that", MEASURED_IN_TRIALS)
     max_confirmations: int = limit(12, "trials", "so many combinations of the joints' best are tried at the end")
     max_model_error: float = limit(
         0.5,
@@ -103,7 +108,7 @@ class JudgeLimits:
     repeat_rad2: float = limit(
         1e-6,
         "rad²",
-        "two recordings with the same controllers differ by so much (1 mrad rms), besides a share",
+        "besides a share, two recordings with the same controllers differ by so much (1 mrad rms)",
         MEASURED_IN_TRIALS,
     )
     unseen_rad: float = limit(
@@ -121,11 +126,16 @@ class JudgeLimits:
     kept_share: float = limit(
         0.1, "of the error before", "a joint that keeps its controller feels its neighbours' quicker moves"
     )
-    kept_growth: float = limit(2.0, "times before", "and how stiffly they rest: its unrest may grow so much")
+    kept_growth: float = limit(
+        2.0,
+        "times before",
+        "the unrest of such a joint may grow so much: it feels how stiffly they rest",
+    )
     pushed_rad: float = limit(
         0.003,
         "rad rms",
-        "while a joint holds still, quicker neighbours push it: less unrest than this counts after its own moves only",
+        "quicker neighbours push a joint that holds still by 2 to 3 mrad; its own moves show that it rests",
+        MEASURED_IN_TRIALS,
     )
 
 
@@ -137,11 +147,10 @@ class SearchLimits:
         ((0.05, 96), (0.05, 64), (0.03, 64), (0.02, 64)),
         "of the box, and sets",
         "the searches, each around the best so far: the width of the first pack, and the sets to try",
-        MEASURED_IN_TIME,
     )
     worse_gain: float = limit(1.3, "times", "the worse arm has so much loop gain")
-    worse_lag_s: float = limit(1e-3, "s", "and so much more lag of the potentiometers")
-    gear_sigmas: float = limit(1.0, "standard deviations", "and its gears are looser by so many")
+    worse_lag_s: float = limit(1e-3, "s", "the worse arm has so much more lag of the potentiometers")
+    gear_sigmas: float = limit(1.0, "standard deviations", "the worse arm's gears are looser by so many")
     unrest_aim: float = limit(0.7, "of the check's limit", "the unrest that a set on the model may show")
     rattle_aim: float = limit(
         0.5, "of the check's limit", "the same of rattling: an arm rattles 1.1 to 2.0 times its model", MEASURED_ON_ARMS
@@ -168,12 +177,14 @@ class SearchLimits:
         0.5,
         "of the error before (rms)",
         "a joint that keeps more is searched once more: the tuned fuzzy sets may be a dead end",
+        MEASURED_ON_ARMS,
     )
     price: float = limit(2.0, "times the error before", "of being beyond a limit by all of it")
     steps_price: float = limit(
         20.0,
         "times the error before",
         "the same for steps: with 4 % more of them a joint does not pass, whatever the arm does",
+        MEASURED_ON_ARMS,
     )
     host_ripple_share: float = limit(
         0.6, "of the ripple under a leader's hand", "is there while a host leads, without the leader's noise"

@@ -127,8 +127,9 @@ class _Commissioning:
         facts = book.get("start")
         if facts is None:
             rig = arm()
+            wanted = options.judging.tuning.identification.excitation
             refuse_uncalibrated(self.nominal, rig.before, options.judging.tuning.model)
-            limits = limits_of(self.nominal, rig.before, rig.pose(), options.ranges or {})
+            limits = limits_of(self.nominal, rig.before, rig.pose(), options.ranges or {}, wanted)
             room = JointRange(limits.pose, limits.low, limits.high)
             if options.model is None:
                 with SideJob(lambda report: self._design(room, rig.before, report), self._report) as job:
@@ -210,6 +211,7 @@ class _Commissioning:
             seed=self.options.seed,
             budget=DESIGN_BUDGET,
             report=report,
+            judging=self.options.judging.tuning.identification,
         )
         save_leader(self.book.path(EXCITING), designed.motion)
 

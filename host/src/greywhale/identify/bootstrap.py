@@ -21,6 +21,7 @@ from greywhale.arm.parameters import USUAL_TRACK_RAD
 from greywhale.base.types import Floats
 from greywhale.identify.closed_loop import Loop
 from greywhale.identify.data import COUNTS, FINE_STEP_S, Prepared, prepare
+from greywhale.identify.limits import IDENTIFICATION_LIMITS, UncertaintyLimits
 from greywhale.identify.space import COUPLED, WHOLE_ARM, Space
 from greywhale.identify.steps import WindowFit
 from greywhale.identify.windows import WindowResidual
@@ -28,26 +29,6 @@ from greywhale.protocol.firmware import ANGLE_LSB, TICK_S, pwm_steps
 
 LOGS = 6
 STEPS = 8
-# A fit starts so many of the formula's standard deviations away.
-START = 2.0
-# The formula's shape counts like so many logs.
-SHAPE_LOGS = 3.0
-# What fits are off beyond that, as standard deviations of the searched numbers: the fits of simulated logs begin near
-# the truth, the real one ends in one of several optima. These, and the widening, are measured on arms that are known
-# (docs/identify.md). Yaw and roll feel no gravity and hardly show their alpha.
-SYSTEMATIC = {
-    "inertia": 0.015,
-    "damping": 0.002,
-    "coulomb": 0.008,
-    "breakaway": 0.03,
-    "stribeck": 0.3,
-    "gap": 2e-4,
-    "drag": 2.0,
-    "teeth": 0.7,
-    "play": 6e-4,
-}
-SYSTEMATIC_ALPHA = {0: 0.03, 1: 0.001, 2: 0.001, 3: 3.0}  # of joints
-WIDENED = 1.3  # times the variance
 # Moments of a tick at which its four conversions hold their input, as shares of it.
 MOMENTS = (0.1, 0.3, 0.5, 0.7)
 
@@ -74,7 +55,9 @@ def scatter_of_fits(
         made = [_simulate(*pair, plant, zero, 1 + number + LOGS * seed) for pair in zip(logs, loops, strict=True)]
         windows = WindowResidual(made, space.arm, joints, longest_step=FINE_STEP_S)
         windows.settle(plant, zero)
-        start = x + START * root @ np.random.default_rng([seed, number]).standard_normal(len(x))
+        start = x + logs[0].limits.uncertainty.start_sigmas * root @ np.random.default_rng(
+            [seed, number]
+        ).standard_normal(len(x))
         return WindowFit(windows, space, np.clip(start, low, high)).run(STEPS) - x
 
     found: list[Floats] = []
@@ -91,7 +74,12 @@ def scatter_of_fits(
     return np.array(found).reshape(-1, len(x))
 
 
-def spread_covariance(covariance: Floats, scatter: Floats, space: Space) -> Floats:
+def spread_covariance(
+    covariance: Floats,
+    scatter: Floats,
+    space: Space,
+    limits: UncertaintyLimits = IDENTIFICATION_LIMITS.uncertainty,
+) -> Floats:
     """The covariance of the formula, made to cover the scatter of fits (fits, numbers), group by group."""
     if not len(scatter):
         return covariance
@@ -102,21 +90,20 @@ def spread_covariance(covariance: Floats, scatter: Floats, space: Space) -> Floa
             inside = np.linalg.solve(covariance[np.ix_(mine, mine)], scatter[:, mine].T)
             scale[mine] = np.sqrt(max(1.0, float(np.mean(np.sum(scatter[:, mine].T * inside, axis=0))) / len(mine)))
     shape = covariance * np.outer(scale, scale)
-    count = SHAPE_LOGS + len(scatter)
+    count = limits.shape_logs + len(scatter)
     # From so few logs the variance itself is uncertain: it is that of Student's t.
     student = count / (count - 2.0)
-    spread = WIDENED * student * (SHAPE_LOGS * shape + scatter.T @ scatter) / count
-    spread += np.diag(_systematic(space) ** 2)
+    spread = limits.widened * student * (limits.shape_logs * shape + scatter.T @ scatter) / count
+    spread += np.diag(_systematic(space, limits) ** 2)
     # No number is less certain than in the user's arm file.
     known: Floats = np.linalg.inv(np.linalg.inv(spread) + np.diag(space.doubts() ** -2.0))
     return (known + known.T) / 2.0
 
 
-def _systematic(space: Space) -> Floats:
-    known = [
-        SYSTEMATIC_ALPHA.get(one.joint, 0.0) if one.kind == "alpha" else SYSTEMATIC.get(one.kind, 0.0)
-        for one in space.parameters
-    ]
+def _systematic(space: Space, limits: UncertaintyLimits) -> Floats:
+    """What fits are off beyond their scatter (docs/identify.md)."""
+    kinds, alphas = dict(limits.systematic), limits.systematic_alpha
+    known = [alphas[one.joint] if one.kind == "alpha" else kinds.get(one.kind, 0.0) for one in space.parameters]
     return np.array(known)
 
 
@@ -137,7 +124,7 @@ def _simulate(log: Prepared, loop: Loop, plant: Floats, zero: Floats, seed: int)
         voltage=duties[rows] / np.array(pwm_steps(own.table.board)) * supply,
         state=log.log.state[run.slice],
     )
-    return prepare(recorded, shift)
+    return prepare(recorded, shift, log.limits)
 
 
 def read_motion(shown: Floats, noise: Floats, shift: int, random: np.random.Generator) -> Floats:

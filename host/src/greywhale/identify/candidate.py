@@ -11,9 +11,6 @@ from greywhale.identify.closed_loop import LoopResidual
 from greywhale.identify.space import Space
 from greywhale.identify.windows import WindowResidual
 
-# A closed-loop difference of this size counts as one standard deviation (rad): it lasts for many readings.
-LOOP_DOUBT = 1e-2
-
 
 @dataclass(frozen=True)
 class Candidate:
@@ -57,5 +54,8 @@ class WindowsAndLoop:
         self._scale = max(1.0, float(np.sqrt(np.mean(missed**2))))
 
     def __call__(self, space: Space, points: Floats) -> Floats:
-        parts = self._windows(space, points) / self._scale, self._loops(space, points) / LOOP_DOUBT
+        parts = (
+            self._windows(space, points) / self._scale,
+            self._loops(space, points) / self._windows.limits.windows.loop_doubt_rad,
+        )
         return np.concatenate(parts, axis=1)

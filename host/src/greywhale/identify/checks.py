@@ -14,39 +14,29 @@ from greywhale.base.types import Floats
 from greywhale.files.log.driven import MOTION_RAD, tell_off, tell_undriven
 from greywhale.files.log.units import doubt_spacing
 from greywhale.identify.data import Prepared, rows_in
+from greywhale.identify.limits import CheckLimits
 from greywhale.protocol.firmware import JOINTS
 from greywhale.protocol.table import ParameterTable
-
-SHORTEST_S = 4.0
-FARTHEST_S = 0.1
-# A reading that stays exactly at its extreme value for this share of the log, that far out (rad), is clipped.
-CLIPPED_SHARE = 0.01
-CLIPPED_FROM = 2.3
-# Between error and voltage: a controller pulls towards the leader.
-AGAINST = -0.3
-SATURATED = 0.5
-# At least this share of the voltage's changes comes in whole control periods.
-FITTING = 0.7
 
 
 def check(prepared: Prepared, arm: ArmParameters, table: ParameterTable | None) -> list[str]:
     """Refuse a log that cannot be used; doubts that do not forbid it come back as sentences."""
-    log = prepared.log
+    log, limits = prepared.log, prepared.limits.checks
     off = tell_off(log)
     if off:
         raise UserError(f"{log.name}: {off}.")
     used = rows_in(prepared.runs, len(log.time))
-    if prepared.period > FARTHEST_S:
+    if prepared.period > limits.farthest_s:
         raise UserError(
-            f"{log.name}: its rows are {prepared.period:.3g} s apart, but at most {FARTHEST_S:g} s show how an arm "
-            "moves; is time_s in ms? Record more samples a second, or give times in s."
+            f"{log.name}: its rows are {prepared.period:.3g} s apart, but at most {limits.farthest_s:g} s show how an "
+            "arm moves; is time_s in ms? Record more samples a second, or give times in s."
         )
     seconds = sum(run.period * (run.stop - run.start - 1) for run in prepared.runs)
-    if seconds < SHORTEST_S:
+    if seconds < limits.shortest_s:
         remedy = next(iter(doubt_spacing(log.time)), "record longer.")
         raise UserError(
             f"{log.name}: only {seconds:.1f} s of it can be used (motors following, no gap), but at least "
-            f"{SHORTEST_S:g} s are needed; {remedy}"
+            f"{limits.shortest_s:g} s are needed; {remedy}"
         )
     leader, follower, voltage = log.leader[used], log.follower[used], log.voltage[used]
     if not prepared.moving.any():
@@ -56,9 +46,9 @@ def check(prepared: Prepared, arm: ArmParameters, table: ParameterTable | None) 
         raise UserError(doubts[0])
     for joint in np.flatnonzero(prepared.moving):
         where = f"{log.name}: joint {joint}"
-        _refuse_clipped(where, follower[:, joint])
-        _refuse_swapped(where, leader[:, joint], follower[:, joint], voltage[:, joint])
-        doubts += _supply(where, voltage[:, joint], arm)
+        _refuse_clipped(where, follower[:, joint], limits)
+        _refuse_swapped(where, leader[:, joint], follower[:, joint], voltage[:, joint], limits.against)
+        doubts += _supply(where, voltage[:, joint], arm, limits.saturated_share)
     _refuse_other_period(prepared, table, used)
     return doubts
 
@@ -86,29 +76,29 @@ def refuse_undriven(prepared: Prepared, joints: Sequence[int]) -> None:
             )
 
 
-def _refuse_clipped(where: str, follower: Floats) -> None:
+def _refuse_clipped(where: str, follower: Floats, limits: CheckLimits) -> None:
     for extreme in (follower.max(), follower.min()):
         share = float(np.mean(follower == extreme))
-        if abs(extreme) > CLIPPED_FROM and share > CLIPPED_SHARE:
+        if abs(extreme) > limits.clipped_from_rad and share > limits.clipped_share:
             raise UserError(
                 f"{where} is clipped: its follower reads exactly {extreme:.4f} rad in {100 * share:.0f} % of the rows, "
                 "as a potentiometer at its end does; keep the motion within its range, or correct its zero."
             )
 
 
-def _refuse_swapped(where: str, leader: Floats, follower: Floats, voltage: Floats) -> None:
+def _refuse_swapped(where: str, leader: Floats, follower: Floats, voltage: Floats, against: float) -> None:
     error = leader - follower
     if np.std(error) < 1e-4 or np.std(voltage) < 1e-3:
         return
     likeness = float(np.corrcoef(error, voltage)[0, 1])
-    if likeness < AGAINST:
+    if likeness < against:
         raise UserError(
             f"{where} looks as if leader and follower columns were swapped (or the motor's direction inverted): its "
             f"voltage pushes away from the leader (correlation of voltage with leader - follower {likeness:.2f})."
         )
 
 
-def _supply(where: str, voltage: Floats, arm: ArmParameters) -> list[str]:
+def _supply(where: str, voltage: Floats, arm: ArmParameters, saturated_share: float) -> list[str]:
     largest = float(np.abs(voltage).max())
     if largest > 1.02 * arm.drive.supply:
         raise UserError(
@@ -116,7 +106,7 @@ def _supply(where: str, voltage: Floats, arm: ArmParameters) -> list[str]:
             "correct the supply in the arm file."
         )
     share = float(np.mean(np.abs(voltage) > 0.99 * arm.drive.supply))
-    if share > SATURATED:
+    if share > saturated_share:
         return [f"{where} was at full voltage {100 * share:.0f} % of the time; slower motion would tell more."]
     return []
 
@@ -141,7 +131,11 @@ def _refuse_other_period(prepared: Prepared, table: ParameterTable | None, used:
     # A lost row shows a change late; most changes still come in whole periods.
     fitting = float(np.mean(spacing % stated == 0)) if len(spacing) else 1.0
     common = int(np.gcd.reduce(spacing)) if len(spacing) else stated
-    if usual < stated - 0.5 or fitting < FITTING or (common > stated and usual > 1.5 * stated):
+    if (
+        usual < stated - 0.5
+        or fitting < prepared.limits.checks.fitting_share
+        or (common > stated and usual > 1.5 * stated)
+    ):
         raise UserError(
             f"{log.name}: joint {joint}: the voltage changes every {usual:g} ms, but the control period is stated as "
             f"{stated} ms; the log is from another controller or period."

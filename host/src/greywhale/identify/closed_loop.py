@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from greywhale.arm import ArmParameters, PotentiometerBank
 from greywhale.arm.parameters import MOST_NOISE_V, Potentiometer
 from greywhale.base.types import Floats
-from greywhale.identify.data import BLOCK_S, Prepared, at, part_of, pot_noise
+from greywhale.identify.data import Prepared, at, part_of, pot_noise
 from greywhale.identify.space import Space
 from greywhale.loop.closed_loop import ClosedLoop, known_readings, shown_angles, with_ideal_follower
 from greywhale.loop.controllers import controllers_of
@@ -25,7 +25,6 @@ LEAD_TICKS = 500
 COMPARED_TICKS = 5
 STEPS_PER_TICK = 2
 BENCH_STEPS = 4
-ROWS_PER_BLOCK = round(BLOCK_S / (COMPARED_TICKS * TICK_S))
 SEED = 1
 
 
@@ -94,8 +93,13 @@ class Loop:
     def difference(self, plants: Floats, held_out: bool | None = None) -> Floats:
         """Candidates minus log, (candidates, rows, 4), rad: over all of it, the held-out part, or the rest."""
         found = self.angles(plants) - self.follower[None, ::COMPARED_TICKS]
-        kept = found if held_out is None else found[:, part_of(self.rows, ROWS_PER_BLOCK, held_out)]
+        kept = found if held_out is None else found[:, self.part(held_out)]
         return np.nan_to_num(kept, nan=10.0, posinf=10.0, neginf=-10.0)
+
+    def part(self, held_out: bool) -> NDArray[np.intp]:
+        """The rows that are held out, or those that are not."""
+        limits = self.log.limits.data
+        return part_of(self.rows, round(limits.block_s / (COMPARED_TICKS * TICK_S)), held_out, limits.held_out_every)
 
     def error(self, plants: Floats, held_out: bool | None = None) -> Floats:
         """Mean squared difference to the log, (candidates, 4), rad²."""
@@ -110,7 +114,7 @@ class LoopResidual:
         self.loops = loops
         self.joints = list(joints)
         self.part = None if whole else False
-        rows = [loop.rows if whole else len(part_of(loop.rows, ROWS_PER_BLOCK, False)) for loop in loops]
+        rows = [loop.rows if whole else len(loop.part(False)) for loop in loops]
         self.joint_of = np.tile(np.array(self.joints, dtype=np.intp), sum(rows))
         self.seconds = sum(loop.seconds for loop in loops)
 

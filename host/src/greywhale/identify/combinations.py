@@ -13,11 +13,8 @@ from typing import TypedDict
 import numpy as np
 
 from greywhale.base.types import Floats
+from greywhale.identify.limits import IDENTIFICATION_LIMITS, UncertaintyLimits
 from greywhale.identify.space import Space
-
-# Numbers that are less certain than this (a share) may lie on a ridge; a combination that is stated is so many times as
-# certain as either of its numbers.
-UNCERTAIN, SHARPER = 0.05, 3.0
 
 
 class CombinationFacts(TypedDict):
@@ -38,7 +35,12 @@ class Combination:
         return {"name": self.name, "value": self.value, "relative_deviation": self.deviation}
 
 
-def combinations(space: Space, x: Floats, covariance: Floats) -> tuple[Combination, ...]:
+def combinations(
+    space: Space,
+    x: Floats,
+    covariance: Floats,
+    limits: UncertaintyLimits = IDENTIFICATION_LIMITS.uncertainty,
+) -> tuple[Combination, ...]:
     """For every uncertain number of a joint, its sharpest combination with another number, where that is far sharper.
 
     `covariance` is that of the searched numbers. Only positive quantities, whose logarithms are searched, take part.
@@ -48,22 +50,22 @@ def combinations(space: Space, x: Floats, covariance: Floats) -> tuple[Combinati
     for first in range(len(space)):
         best: tuple[float, int, int] | None = None
         for second in range(len(space)):
-            if not _may_combine(space, deviations, first, second):
+            if not _may_combine(space, deviations, first, second, limits.uncertain):
                 continue
             for sign in (-1, 1):
                 variance = deviations[first] ** 2 + deviations[second] ** 2 + 2 * sign * covariance[first, second]
                 deviation = math.sqrt(max(variance, 0.0))
                 if best is None or deviation < best[0]:
                     best = deviation, second, sign
-        if best is not None and SHARPER * best[0] < min(deviations[first], deviations[best[1]]):
+        if best is not None and limits.sharper * best[0] < min(deviations[first], deviations[best[1]]):
             found.setdefault(frozenset((first, best[1])), _state(space, x, first, *best[1:], best[0]))
     return tuple(found.values())
 
 
-def _may_combine(space: Space, deviations: Floats, first: int, second: int) -> bool:
+def _may_combine(space: Space, deviations: Floats, first: int, second: int, least: float) -> bool:
     one, other = space.parameters[first], space.parameters[second]
     positive = space.kind(first).logarithmic and space.kind(second).logarithmic
-    uncertain = min(deviations[first], deviations[second]) > UNCERTAIN
+    uncertain = min(deviations[first], deviations[second]) > least
     return first != second and one.joint == other.joint and positive and uncertain
 
 

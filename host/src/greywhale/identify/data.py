@@ -12,33 +12,18 @@ from greywhale.arm.parameters import USUAL_TRACK_RAD
 from greywhale.base.types import Floats
 from greywhale.files.log import Log
 from greywhale.files.log.driven import MOTION_RAD, driven_rows, undriven
+from greywhale.identify.limits import IDENTIFICATION_LIMITS, DataLimits, IdentificationLimits
 from greywhale.measure.runs import Run, gap_free_runs
 from greywhale.protocol.firmware import CONVERSIONS, JOINTS, TICK_S
 
 COUNTS = 1024  # of the converter
-WINDOW_S = 0.5
-SMOOTHING_S = 0.04  # of the angle, to find velocities
 # Longest steps of the integration in a window, s: for the search, and for the final fit (a light link moves through its
 # gap in some milliseconds).
 STEP_S = 1e-3
 FINE_STEP_S = 0.25e-3
-# Windows are compared with the log at this spacing, s; readings that are closer differ in noise only.
-COMPARED_S = 5e-3
-# The longest step holds in so many percent of the spacings between rows; the few longer spacings may exceed it.
-MOST_SPACINGS = 99.0
 # Firmware: from a new sample to its voltage, and the mean age of a tick's four conversions (s).
 ACTUATION_S = 0.3e-3
 CONVERSION_S = 0.5e-3
-# A joint that is slower than this (rad/s) may turn back within its potentiometer's play unseen.
-SURE_RAD_S = 0.05
-# Rows further apart than this (s), or than one and a half periods of a slower log, end a stretch.
-LONGEST_GAP_S = 0.02
-# Of every four blocks of this length (s) the last is held out. A block is shorter than a motion, so each motion is in
-# both parts.
-BLOCK_S = 0.5
-BLOCKS = 4
-# In a lively window a joint moves by more than this.
-LIVELY_RAD = 0.01
 
 
 @dataclass(frozen=True)
@@ -55,6 +40,7 @@ class Prepared:
     noise: Floats  # rad, standard deviation of a reading, per joint
     moving: NDArray[np.bool_]  # per joint
     undriven: tuple[int, ...]  # joints without a voltage that changes
+    limits: IdentificationLimits = IDENTIFICATION_LIMITS
 
     @property
     def shown(self) -> NDArray[np.bool_]:
@@ -80,22 +66,24 @@ class Windows:
     substeps: int
 
 
-def part_of(count: int, per_block: int, held_out: bool) -> NDArray[np.intp]:
+def part_of(count: int, per_block: int, held_out: bool, held_out_every: int) -> NDArray[np.intp]:
     """The rows or windows of `count` that are held out, or those that are not."""
-    last = np.arange(count) // per_block % BLOCKS == BLOCKS - 1
+    last = np.arange(count) // per_block % held_out_every == held_out_every - 1
     return np.flatnonzero(last if held_out else ~last)
 
 
-def prepare(log: Log, filter_shift: int | None) -> Prepared:
+def prepare(log: Log, filter_shift: int | None, judging: IdentificationLimits = IDENTIFICATION_LIMITS) -> Prepared:
     """Find the usable stretches. Velocities come from local quadratic fits, noise from the quietest moments."""
+    limits = judging.data
     from scipy.signal import savgol_filter  # slow to import
 
     wanted = driven_rows(log)
     period = float(np.median(np.diff(log.time)))
     # Long enough for a window. A few rows may be missing or late, as voltages change little meanwhile.
-    least = max(8, round(WINDOW_S / period) + 2)
-    runs = tuple(one for one in gap_free_runs(log.time, wanted, LONGEST_GAP_S) if one.stop - one.start >= least)
-    size = max(5, 2 * round(SMOOTHING_S / period / 2) + 1)
+    least = max(8, round(limits.window_s / period) + 2)
+    whole = gap_free_runs(log.time, wanted, limits.longest_gap_s)
+    runs = tuple(one for one in whole if one.stop - one.start >= least)
+    size = max(5, 2 * round(limits.smoothing_s / period / 2) + 1)
     velocity, acceleration, smooth = (np.zeros_like(log.follower) for _ in range(3))
     for run in runs:
         time = log.time[run.slice]
@@ -107,8 +95,9 @@ def prepare(log: Log, filter_shift: int | None) -> Prepared:
     delay = 0.0 if filter_shift is None else CONVERSION_S + TICK_S * ((1 << filter_shift) - 1)
     noise = _noise(log.follower - smooth, used, size)
     moving = np.array([bool(used.any() and np.ptp(log.follower[used, joint]) > MOTION_RAD) for joint in range(JOINTS)])
-    places = _places(velocity, runs)
-    return Prepared(log, runs, period, delay, velocity, acceleration, places, noise, moving, undriven(log, used))
+    places = _places(velocity, runs, limits)
+    still = undriven(log, used)
+    return Prepared(log, runs, period, delay, velocity, acceleration, places, noise, moving, still, judging)
 
 
 def pot_noise(log: Prepared, filter_shift: int, supply: float) -> Floats:
@@ -132,12 +121,12 @@ def rows_in(runs: Sequence[Run], count: int) -> NDArray[np.bool_]:
     return used
 
 
-def _places(velocity: Floats, runs: tuple[Run, ...]) -> Floats:
+def _places(velocity: Floats, runs: tuple[Run, ...], limits: DataLimits) -> Floats:
     """The direction of the last motion that was sure, within each stretch."""
     places = np.zeros_like(velocity)
     for run in runs:
         speed = velocity[run.slice]
-        last = np.where(np.abs(speed) > SURE_RAD_S, np.arange(len(speed))[:, None], -1)
+        last = np.where(np.abs(speed) > limits.sure_rad_s, np.arange(len(speed))[:, None], -1)
         last = np.maximum.accumulate(last, axis=0)
         places[run.slice] = np.where(last >= 0, np.sign(np.take_along_axis(speed, np.maximum(last, 0), axis=0)), 0.0)
     return places
@@ -191,21 +180,21 @@ def _evenly(numbers: NDArray[np.intp], count: int) -> NDArray[np.intp]:
 def _is_lively(prepared: Prepared) -> NDArray[np.bool_]:
     """Whether any joint moves in a window, (windows,)."""
     rows = _rows_of_window(prepared)
-    angles = prepared.log.follower
-    found = [float(np.ptp(angles[first : first + rows], axis=0).max()) > LIVELY_RAD for first in first_rows(prepared)]
+    angles, lively = prepared.log.follower, prepared.limits.data.lively_rad
+    found = [float(np.ptp(angles[first : first + rows], axis=0).max()) > lively for first in first_rows(prepared)]
     return np.array(found, dtype=bool)
 
 
 def _rows_of_window(prepared: Prepared) -> int:
-    return max(6, round(WINDOW_S / prepared.period))
+    return max(6, round(prepared.limits.data.window_s / prepared.period))
 
 
 def windows_of(
     prepared: Prepared, part: slice | NDArray[np.intp] | None = None, longest_step: float = STEP_S
 ) -> Windows:
     """Windows one after the other over the whole log, or over a `part` of its windows."""
-    rows = _rows_of_window(prepared)
-    every = max(1, round(COMPARED_S / prepared.period))
+    rows, limits = _rows_of_window(prepared), prepared.limits.data
+    every = max(1, round(limits.compared_s / prepared.period))
     first = first_rows(prepared)
     if part is not None:
         first = np.ascontiguousarray(first[part])
@@ -214,9 +203,9 @@ def windows_of(
     at = first[:, None] + kept[None, :]
     spacing = np.diff(log.time, append=log.time[-1] + prepared.period)
     # Rounded, so that windows of even rows can share a processor's vector. Between stretches nothing is simulated.
-    longest = max(1.5 * prepared.period, LONGEST_GAP_S)
+    longest = max(1.5 * prepared.period, limits.longest_gap_s)
     spacing = np.round(np.minimum(spacing, longest), 9).astype(np.float64)
-    substeps = max(1, int(np.ceil(np.percentile(spacing, MOST_SPACINGS) / longest_step - 1e-6)))
+    substeps = max(1, int(np.ceil(np.percentile(spacing, limits.usual_spacings) / longest_step - 1e-6)))
     return Windows(
         first=first,
         rows=rows,

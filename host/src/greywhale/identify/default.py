@@ -47,14 +47,16 @@ def find_default(task: IdentificationRequest) -> FoundModel:
             task.seed,
             lambda done: task.report("testing the fit", done),
         )
-        sure = sure.widened(spread_covariance(sure.covariance, scatter, best.space), best.space, best.x, joints)
+        sure = sure.widened(
+            spread_covariance(sure.covariance, scatter, best.space, sure.limits), best.space, best.x, joints
+        )
     return FoundModel(
         plant=best.plant,
         zero=best.zero,
         joints=joints,
         order=best.order,
         orders=tuple((one.order, float(one.held_out or 0.0)) for one in search.tried),
-        combinations=combinations(best.space, best.x, sure.covariance),
+        combinations=combinations(best.space, best.x, sure.covariance, sure.limits),
         rivals=tuple(Rival(one.order, float(one.held_out or 0.0), one.plant) for one in search.rivals()),
         estimates=estimates_of(best.space, best.x, sure.deviations),
         covariance=sure.covariance,

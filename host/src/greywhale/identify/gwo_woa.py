@@ -14,14 +14,13 @@ import numpy as np
 from greywhale.base.types import Floats
 from greywhale.identify.default import estimates_of
 from greywhale.identify.found_model import FoundModel
+from greywhale.identify.limits import IDENTIFICATION_LIMITS
 from greywhale.identify.pack_search import PackSearch
 from greywhale.identify.request import IdentificationRequest
 from greywhale.identify.space import MOTOR, Space
 from greywhale.protocol.firmware import JOINTS
 
 METHOD = "gwo-woa"
-# A value is at most this many times as large or as small as the white box's, as a logarithm.
-FARTHEST = 2.5
 
 
 @dataclass
@@ -31,13 +30,14 @@ class LogarithmicSearch(PackSearch):
     said = "GWO-WOA on logarithms"
 
     joints: tuple[int, ...] = tuple(range(JOINTS))
+    farthest_log: float = IDENTIFICATION_LIMITS.search.farthest_log  # from the white box
 
     def __post_init__(self) -> None:
         self.space = Space.of(self.arm, (*MOTOR, "coulomb"), self.joints)
 
     def bounds(self) -> tuple[Floats, Floats]:
         (low, high), middle = self.space.bounds(), self.space.start()
-        return np.maximum(low, middle - FARTHEST), np.minimum(high, middle + FARTHEST)
+        return np.maximum(low, middle - self.farthest_log), np.minimum(high, middle + self.farthest_log)
 
     def start(self) -> Floats:
         return self.space.start()[None]
@@ -48,7 +48,14 @@ class LogarithmicSearch(PackSearch):
 
 def find_by_gwo_woa(task: IdentificationRequest) -> FoundModel:
     """Run the search. An interrupt after the first pack ends it early; before that, the interrupt is raised again."""
-    search = LogarithmicSearch(task.white_box, task.required_loops(), task.seed, task.report, joints=task.moving)
+    search = LogarithmicSearch(
+        task.white_box,
+        task.required_loops(),
+        task.seed,
+        task.report,
+        joints=task.moving,
+        farthest_log=task.limits.search.farthest_log,
+    )
     search.run()
     assert search.x is not None
     return FoundModel(

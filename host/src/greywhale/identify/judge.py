@@ -18,6 +18,7 @@ from greywhale.arm.parameters import JOINT_NAMES
 from greywhale.base.types import Floats, PerJoint
 from greywhale.identify.closed_loop import COMPARED_TICKS, Loop
 from greywhale.identify.data import COUNTS, Prepared
+from greywhale.identify.limits import IDENTIFICATION_LIMITS, JudgeLimits
 from greywhale.identify.space import Space
 from greywhale.identify.windows import WindowResidual
 from greywhale.measure.swings import smooth_motion
@@ -26,16 +27,7 @@ from greywhale.protocol.firmware import JOINTS, TICK_S
 from greywhale.protocol.table import ParameterTable
 
 TINY = 1e-12  # rad², beside every error of a joint that moved
-# A joint is doubted whose model leaves more than this share of the tracking error with a changed controller, and so
-# many times the share that it leaves with its own; below this error (rad) nobody cares.
-UNEXPLAINED = 0.5
-WORSE = 4.0
-SMALL_RAD = 5e-3
 CLOSED_LOOP, WINDOWS = "closed loop", "logged voltages, windows"
-# Chance excuses an error up to this, rad² of all joints together, or up to the white box's own, whichever is larger: of
-# a model that is less certain nothing is known.
-EXCUSED = JOINTS * SMALL_RAD**2
-SURE = 0.95  # a model that is further from the log than this share of those that the fit allows is not so by chance
 FIT, SECOND, CHANGED = "fit", "validation", "validation, changed controller"
 
 
@@ -119,6 +111,7 @@ class LogVerdict:
     model: tuple[float, ...]
     following: Following | None = None
     chance: float = 0.0
+    limits: JudgeLimits = IDENTIFICATION_LIMITS.judge
 
     @property
     def improvement(self) -> float:
@@ -153,7 +146,8 @@ class LogVerdict:
 
     @property
     def _most_excused(self) -> float:
-        return max(sum(self.white_box), EXCUSED)
+        """Of a model that is less certain nothing is known: an error up to this, or the white box's own."""
+        return max(sum(self.white_box), JOINTS * self.limits.small_rad**2)
 
     @property
     def _excused(self) -> float:
@@ -208,14 +202,16 @@ def judge(
         others = [windows.mse(draw, zero) for draw in draws]
         measure = WINDOWS
     one, other = (tuple(float(value) for value in np.where(kept, errors, 0.0)) for errors in (before, after))
-    chance = _worse_by_chance(float(after[kept].sum()), np.array([errors[kept].sum() for errors in others]))
+    limits = subject.log.limits.judge
+    apart = np.array([errors[kept].sum() for errors in others])
+    chance = _worse_by_chance(float(after[kept].sum()), apart, limits.sure_share)
     chance += float(_unresolved(arm)[kept].sum())
-    return LogVerdict(subject.log.log.name, subject.role, measure, one, other, following, chance)
+    return LogVerdict(subject.log.log.name, subject.role, measure, one, other, following, chance, limits)
 
 
-def _worse_by_chance(estimate: float, draws: Floats) -> float:
+def _worse_by_chance(estimate: float, draws: Floats, sure_share: float) -> float:
     """By how much a plant that the fit allows is further from the log than the estimate, in all but few cases."""
-    return max(0.0, float(np.quantile(draws, SURE)) - estimate) if len(draws) else 0.0
+    return max(0.0, float(np.quantile(draws, sure_share)) - estimate) if len(draws) else 0.0
 
 
 def _unresolved(arm: ArmParameters) -> Floats:
@@ -286,11 +282,11 @@ def doubts_of(verdicts: Sequence[LogVerdict], joints: Sequence[int]) -> tuple[st
 
 def _describe_unexplained(verdict: LogVerdict, own: Sequence[Following], joints: Sequence[int]) -> list[str]:
     assert verdict.following is not None
-    sentences = []
+    sentences, limits = [], verdict.limits
     for joint in joints:
         share, usual = verdict.following.unexplained[joint], max(one.unexplained[joint] for one in own)
         left = np.sqrt(verdict.following.model[joint])
-        if share > UNEXPLAINED and share > WORSE * usual and left > SMALL_RAD:
+        if share > limits.max_unexplained and share > limits.worse_times * usual and left > limits.small_rad:
             sentences.append(
                 f"{verdict.name}: joint {joint} ({JOINT_NAMES[joint]}) follows otherwise than the model by "
                 f"{1e3 * left:.0f} mrad rms, {100 * share:.0f} % of its tracking error, against {100 * usual:.0f} % "

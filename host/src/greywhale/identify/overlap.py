@@ -10,34 +10,34 @@ from numpy.typing import NDArray
 from greywhale.base.errors import BadUsage
 from greywhale.base.types import Floats
 from greywhale.files.log import Log
-from greywhale.identify.data import LIVELY_RAD
+from greywhale.identify.limits import IDENTIFICATION_LIMITS, IdentificationLimits
 from greywhale.measure.runs import stretches
 
 # So many rows one after another are not the same by chance (a power of two). At rest they may be: only stretches in
 # which the arm moves count.
 _RUN = 32
-# Logs may share this part of the shorter one: recordings on the bench may begin with the same motion and noise.
-_MOST_SHARED = 0.2
 _FACTOR = 0x9E3779B97F4A7C15  # odd, of 64 bits
 
 
-def refuse_shared(fit: Sequence[Log], validate: Sequence[Log]) -> None:
+def refuse_shared(
+    fit: Sequence[Log], validate: Sequence[Log], judging: IdentificationLimits = IDENTIFICATION_LIMITS
+) -> None:
     """Refuse logs of which one holds the samples of another: each may be fitted once, and none validated that was."""
     for place, log in enumerate(fit):
         for other in fit[:place]:
-            if shares_samples(other, log):
+            if shares_samples(other, log, judging):
                 raise BadUsage(
                     f"{_both(other, log)}; what is fitted twice counts twice. Give one of them, or record another log."
                 )
     for log in validate:
         for other in fit:
-            if shares_samples(other, log):
+            if shares_samples(other, log, judging):
                 raise BadUsage(
                     f"{_both(other, log)}; a model is validated on a log that it was not fitted to. Record another one."
                 )
 
 
-def shares_samples(one: Log, other: Log) -> bool:
+def shares_samples(one: Log, other: Log, judging: IdentificationLimits = IDENTIFICATION_LIMITS) -> bool:
     """Whether the logs hold the same samples, all or a good part of them, whatever their clocks say."""
     if one is other:
         return True
@@ -50,7 +50,8 @@ def shares_samples(one: Log, other: Log) -> bool:
     shared = np.zeros(len(short) + 1, dtype=np.int64)
     np.add.at(shared, starts, 1)
     np.add.at(shared, starts + _RUN, -1)
-    return _count_lively(short, np.cumsum(shared)[:-1] > 0) > _MOST_SHARED * len(short)
+    lively = _count_lively(short, np.cumsum(shared)[:-1] > 0, judging.data.lively_rad)
+    return lively > judging.checks.max_shared * len(short)
 
 
 def _both(one: Log, other: Log) -> str:
@@ -80,11 +81,11 @@ def _hash_runs(rows: Floats) -> NDArray[np.uint64]:
     return found
 
 
-def _count_lively(rows: Floats, shared: NDArray[np.bool_]) -> int:
+def _count_lively(rows: Floats, shared: NDArray[np.bool_], lively_rad: float) -> int:
     """How many rows lie in shared stretches in which a follower's joint moves."""
     joints = rows.shape[1] // 3
     return sum(
         stop - start
         for start, stop in stretches(shared)
-        if np.ptp(rows[start:stop, joints : 2 * joints], axis=0).max() > LIVELY_RAD
+        if np.ptp(rows[start:stop, joints : 2 * joints], axis=0).max() > lively_rad
     )

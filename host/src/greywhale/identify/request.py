@@ -9,6 +9,7 @@ from greywhale.base.errors import UserError
 from greywhale.base.types import Progress
 from greywhale.identify.closed_loop import Loop
 from greywhale.identify.judge import FIT, JudgedLog
+from greywhale.identify.limits import IdentificationLimits
 from greywhale.protocol.firmware import JOINTS
 
 
@@ -24,6 +25,11 @@ class IdentificationRequest:
     seed: int
     report: Progress
     begin: ArmParameters | None = None
+
+    @property
+    def limits(self) -> IdentificationLimits:
+        """Those that the logs carry."""
+        return self.subjects[0].log.limits
 
     @property
     def fitted(self) -> tuple[JudgedLog, ...]:

@@ -16,6 +16,7 @@ from greywhale.identify.default import find_default
 from greywhale.identify.found_model import FoundModel
 from greywhale.identify.gwo_woa import METHOD as GWO_WOA
 from greywhale.identify.gwo_woa import find_by_gwo_woa
+from greywhale.identify.limits import IDENTIFICATION_LIMITS, IdentificationLimits
 from greywhale.identify.overlap import refuse_shared
 from greywhale.identify.paper import METHODS as PAPER_METHODS
 from greywhale.identify.paper import find_as_paper
@@ -37,6 +38,7 @@ def identify(
     seed: int = 0,
     begin: ArmParameters | None = None,
     report: Progress | None = None,
+    judging: IdentificationLimits = IDENTIFICATION_LIMITS,
 ) -> IdentificationResult:
     """Find the arm that made the logs. `arm` is the white box to start from and supplies all geometry.
 
@@ -44,7 +46,8 @@ def identify(
     logs, and only orders that it lacks are tried. That takes a fraction of the time.
     A log that holds the samples of another one is refused: each is fitted once, and validates only if it was not.
     `tables` are controllers with which the logs may have been recorded; the CRC in each log shows which one it is. An
-    interrupt (Ctrl-C) after the first model ends the search early, with `complete` False in the outcome.
+    interrupt (Ctrl-C) after the first model ends the search early, with `complete` False in the outcome. `judging`
+    holds all limits.
     """
     if method not in METHODS:
         raise BadUsage(f"method is {method!r}, but it must be one of {', '.join(METHODS)}.")
@@ -55,8 +58,8 @@ def identify(
     require_within("seed", seed, 0, MOST_SEED)
     for log in (*logs, *validate):
         refuse_altered(log, Check.CHANGED)
-    refuse_shared(logs, validate)
-    subjects, doubts = _subjects(logs, validate, arm, tables)
+    refuse_shared(logs, validate, judging)
+    subjects, doubts = _subjects(logs, validate, arm, tables, judging)
     task = IdentificationRequest(arm, tuple(subjects), seed, report or show_no_progress, begin)
     for subject in subjects:
         checks.refuse_undriven(subject.log, task.moving)
@@ -67,10 +70,10 @@ def validated(
     outcome: IdentificationResult, validate: Sequence[Log], tables: Sequence[ParameterTable]
 ) -> IdentificationResult:
     """The same model, judged also on logs that came after it was found; `tables` as for `identify`, for these logs."""
-    logs = [subject.log.log for subject in outcome.subjects]
-    refuse_shared(logs, validate)
+    logs, judging = [subject.log.log for subject in outcome.subjects], outcome.subjects[0].log.limits
+    refuse_shared(logs, validate, judging)
     known = [subject.table for subject in outcome.subjects if subject.table is not None]
-    subjects, doubts = _subjects(logs, validate, outcome.white_box, (*known, *tables))
+    subjects, doubts = _subjects(logs, validate, outcome.white_box, (*known, *tables), judging)
     for subject in subjects:
         checks.refuse_undriven(subject.log, outcome.found.joints)
     remarks = (*_remarks(logs, validate), *doubts)
@@ -112,7 +115,11 @@ def _remarks(*logs: Sequence[Log]) -> list[str]:
 
 
 def _subjects(
-    logs: Sequence[Log], validate: Sequence[Log], arm: ArmParameters, tables: Sequence[ParameterTable]
+    logs: Sequence[Log],
+    validate: Sequence[Log],
+    arm: ArmParameters,
+    tables: Sequence[ParameterTable],
+    judging: IdentificationLimits,
 ) -> tuple[list[judge.JudgedLog], list[str]]:
     """Make every log ready, and check it."""
     subjects, doubts = [], []
@@ -125,7 +132,7 @@ def _subjects(
         shift = None  # nobody knows how old the readings of another tool are
         if log.origin.firmware is not None:
             shift = (table or ParameterTable.defaults())["filter_shift"]
-        prepared = prepare(log, shift)
+        prepared = prepare(log, shift, judging)
         doubts += checks.check(prepared, arm, table)
         if any(log is one for one in logs):
             role = judge.FIT

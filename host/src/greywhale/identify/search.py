@@ -59,19 +59,10 @@ GEARS: tuple[dict[str, float], ...] = (
     {"gap": 5e-3, "drag": 0.1, "teeth": 2e-3},
     {"gap": 3e-3, "drag": 0.03, "teeth": 5e-3},
 )
-# An order with more quantities must predict the held-out data better by this share of 1 + squares over noise.
-WORTH = 0.01
-# The same for the closed loop. It is rough: chance alone moves its error by a tenth.
-WORTH_CLOSED = 0.2
 SOME_WINDOWS = 20
-# Other orders whose held-out misfit is at most so much above the best one's are kept as rivals, and so many of them.
-RIVAL = 0.02
-MOST_RIVALS = 2
 WINDOW_STEPS = 20
-# An order gets a whole fit only if a short one leaves at most so much more of the held-out misfit than there was.
-# Orders of the first two turns always get one: much hangs on them.
-PROBE_STEPS = 8
-PROBE_SLACK = 0.04  # a share
+PROBE_STEPS = 8  # of a short fit
+# Orders of the first two turns always get a whole fit: much hangs on them.
 SURE_TURNS = (0, 1)
 ROUNDS = 2
 LOOP_STEPS = 10
@@ -79,8 +70,6 @@ LOOP_STEPS = 10
 SETTLINGS = 4
 SETTLED_STEPS = 8
 FITS = 3  # so many it often takes until a candidate is settled; only the share that is reported hangs on it
-# Searched numbers that differ by so much are another optimum and get a fit of their own.
-ELSEWHERE = 0.3
 # Readings come in steps, so finite differences in the closed loop are wider than in the windows.
 LOOP_STEP_SCALE = 5.0
 
@@ -105,6 +94,7 @@ class Search:
     def __post_init__(self) -> None:
         self._fitted = WindowResidual(self.logs, self.arm, self.joints, False)
         self._held = WindowResidual(self.logs, self.arm, self.joints, True)
+        self._limits = self._held.limits.search
 
     def run(self) -> None:
         self._begin_part("fitting the motors", 0.0, 1.0)
@@ -128,10 +118,10 @@ class Search:
         best = self.best
         if best is None or best.held_out is None:
             return []
-        most, own = best.held_out + RIVAL, set(best.space.names)
+        most, own = best.held_out + self._limits.rival_margin, set(best.space.names)
         others = [one for one in self.tried if one.held_out is not None and one.held_out < most]
         others = [one for one in others if set(one.space.names) != own]
-        return sorted(others, key=lambda one: float(one.held_out or 0.0))[:MOST_RIVALS]
+        return sorted(others, key=lambda one: float(one.held_out or 0.0))[: self._limits.max_rivals]
 
     def _consider_rivals(self, turn: Sequence[str], number: int) -> None:
         """Try each of some orders on top of the best model, take the one that helps most, and try the others again."""
@@ -193,7 +183,9 @@ class Search:
         assert before.held_out is not None
         few = WindowResidual(self.logs, self.arm, self.joints, False, 2)
         few.settle(before.plant, before.zero)
-        return self._error(self._refine(few, candidate, PROBE_STEPS)) < before.held_out * (1.0 + PROBE_SLACK)
+        return self._error(self._refine(few, candidate, PROBE_STEPS)) < before.held_out * (
+            1.0 + self._limits.probe_slack
+        )
 
     def _may_follow(self, order: str) -> bool:
         """Whether the best model lacks this order. Without Coulomb friction there is no friction at rest."""
@@ -214,7 +206,7 @@ class Search:
         """Take a measured candidate if it predicts the held-out part better than the best so far."""
         best, error = self.best, candidate.held_out
         assert error is not None
-        if best is None or best.held_out is None or error < best.held_out - WORTH:
+        if best is None or best.held_out is None or error < best.held_out - self._limits.min_improvement:
             self.best = candidate
 
     def _error(self, candidate: Candidate) -> float:
@@ -291,7 +283,8 @@ class Search:
         assert self.best is not None
         self._begin_part("comparing with the closed loop", 0.0, 0.0)
         closed = self._fit_closed(self._fitted, self.best, whole=False)
-        if self._closed_error(closed) < (1.0 - WORTH_CLOSED) * self._closed_error(self.best):
+        share = 1.0 - self._limits.min_closed_improvement
+        if self._closed_error(closed) < share * self._closed_error(self.best):
             self.best = closed
 
     def _fit_closed(self, windows: WindowResidual, candidate: Candidate, whole: bool) -> Candidate:
@@ -332,7 +325,7 @@ class Search:
         other = np.array([names.get(name, x) for name, x in zip(candidate.space.names, candidate.x, strict=True)])
         # A joint that feels no gravity hardly shows its alpha: a difference in alpha alone is no other optimum.
         told = np.array([parameter.kind != "alpha" for parameter in candidate.space.parameters])
-        if np.max(np.abs(other - candidate.x)[told]) < ELSEWHERE:
+        if np.max(np.abs(other - candidate.x)[told]) < self._limits.other_optimum:
             return candidate
         tried = [self._settle(windows, replace(candidate, x=x)).x for x in (candidate.x, other)]
         return replace(candidate, x=self._mix_blocks(windows, candidate.space, tried))

@@ -23,9 +23,6 @@ from greywhale.protocol.firmware import JOINTS
 DAMPINGS = (0.02, 0.3, 5.0, 100.0)  # times a block's last damping
 LARGEST_STEP = 1.0  # of a searched number, in doubts
 MOST_DAMPING = 1e8
-# A window counts as usual up to so many times the mean window of its joint. (In many a log the median window is one of
-# rest, and every motion would be an exception.)
-USUAL = 4.0
 ENOUGH = 2e-4  # the fit ends when a step gains less than this share of the cost
 
 
@@ -59,7 +56,8 @@ class WindowFit:
         self._blocks = [block for block in blocks if len(block.numbers)]
         self._numbers = self._simulate(self.x[None])[0]
         misfit = self._misfit(self._numbers)
-        self._usual: Floats = USUAL * np.maximum(np.mean(misfit, axis=1), 1e-9)
+        usual = residual.limits.windows.usual_misfit
+        self._usual: Floats = usual * np.maximum(np.mean(misfit, axis=1), 1e-9)
         self._costs = self._costs_of(self.x, self._numbers)
 
     def _block(self, joints: tuple[int, ...], whose: tuple[int, ...]) -> _Block:

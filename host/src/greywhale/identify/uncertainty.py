@@ -7,32 +7,16 @@ in a row. If each reading counted as new evidence, every deviation would be far 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from greywhale.arm.parameters import JOINT_NAMES
 from greywhale.base.types import Floats
+from greywhale.identify.limits import IDENTIFICATION_LIMITS, UncertaintyLimits
 from greywhale.identify.space import KINDS, WHOLE_ARM, Parameter, Space
 from greywhale.identify.windows import WindowResidual
 
-# A positive quantity is left open if it is known no better than to this factor's logarithm; any other, to so many
-# steps.
-OPEN_LOG = 0.3
-WIDE = 0.1  # of the user's arm's doubts
-OPEN = {
-    "breakaway": 0.5,
-    "gap": 2e-3,
-    "play": 2e-3,
-    "load": 0.2,
-    "creep": 0.05,
-    "lag": 1e-3,
-    "sag": 0.3,
-    "tip": 0.05,
-    "offset": 0.05,
-}
-# These matter little: to know them within a factor of e is enough.
-OPEN_FACTOR = {"drag": 1.0, "teeth": 1.0}
 # Beyond this condition number the smallest eigenvalue is rounding.
 LARGEST_CONDITION = 1e13
 
@@ -64,6 +48,7 @@ class Uncertainty:
     covariance: Floats
     condition: float
     open: tuple[str, ...]
+    limits: UncertaintyLimits = IDENTIFICATION_LIMITS.uncertainty
 
     @property
     def deviations(self) -> Floats:
@@ -72,28 +57,31 @@ class Uncertainty:
 
     def widened(self, covariance: Floats, space: Space, x: Floats, joints: Sequence[int]) -> Uncertainty:
         """The same with another covariance."""
-        found = tuple(_describe_open(space, x, np.sqrt(np.diag(covariance)), joints))
-        return Uncertainty(covariance, self.condition, found)
+        found = tuple(_describe_open(space, x, np.sqrt(np.diag(covariance)), joints, self.limits))
+        return replace(self, covariance=covariance, open=found)
 
 
 def uncertainty(residual: WindowResidual, space: Space, x: Floats, joints: Sequence[int]) -> Uncertainty:
     """Evaluate at a found point. Numbers that the readings leave open are as uncertain as the user's arm file."""
     # Wide differences: a joint that hunts makes the residual rough, and roughness is no information.
-    steps = WIDE * space.doubts()
+    limits = residual.limits.uncertainty
+    steps = limits.wide_difference * space.doubts()
     _, high = space.bounds()
     ahead = np.where(x + steps > high, -steps, steps)
     numbers = residual(space, np.vstack([x[None], x[None, :] + np.diag(ahead)]))
     jacobian = ((numbers[1:] - numbers[0]) / ahead[:, None]).T
     information = jacobian.T @ jacobian
     # Each number in its own natural size: a factor of e, or a step that makes it another value of the quantity.
-    size = np.array([1.0 if space.kind(n).logarithmic else OPEN[one.kind] for n, one in enumerate(space.parameters)])
+    natural = dict(limits.open_steps)
+    size = np.array([1.0 if space.kind(n).logarithmic else natural[one.kind] for n, one in enumerate(space.parameters)])
     values = np.linalg.eigvalsh(information * np.outer(size, size))
     known = float(values[0]) * LARGEST_CONDITION > float(values[-1])
     condition = float(values[-1]) / float(values[0]) if known else LARGEST_CONDITION
     gradients = np.zeros((residual.clusters.max() + 1, len(space)))
     np.add.at(gradients, residual.clusters, jacobian * numbers[0][:, None])
     covariance = _combine(information, gradients.T @ gradients, np.diag(space.doubts() ** -2.0))
-    return Uncertainty(covariance, condition, tuple(_describe_open(space, x, np.sqrt(np.diag(covariance)), joints)))
+    found = _describe_open(space, x, np.sqrt(np.diag(covariance)), joints, limits)
+    return Uncertainty(covariance, condition, tuple(found), limits)
 
 
 def _combine(information: Floats, scatter: Floats, nominal: Floats) -> Floats:
@@ -118,13 +106,17 @@ def _whose(parameter: Parameter) -> str:
     return f"joint {parameter.joint} ({JOINT_NAMES[parameter.joint]})"
 
 
-def open_beyond(parameter: Parameter) -> float:
+def open_beyond(parameter: Parameter, limits: UncertaintyLimits = IDENTIFICATION_LIMITS.uncertainty) -> float:
     """The largest standard deviation with which a searched number counts as known."""
     kind = parameter.kind
-    return OPEN_FACTOR.get(kind, OPEN_LOG) if KINDS[kind].logarithmic else OPEN[kind]
+    if KINDS[kind].logarithmic:
+        return dict(limits.open_factors).get(kind, limits.open_log)
+    return dict(limits.open_steps)[kind]
 
 
-def _describe_open(space: Space, x: Floats, deviations: Floats, joints: Sequence[int]) -> list[str]:
+def _describe_open(
+    space: Space, x: Floats, deviations: Floats, joints: Sequence[int], limits: UncertaintyLimits
+) -> list[str]:
     sentences = [
         f"joint {joint} ({JOINT_NAMES[joint]}): its motor did not move it, so nothing of it was identified and the "
         "values of the arm file stay; lead it by half a radian or more"
@@ -133,7 +125,7 @@ def _describe_open(space: Space, x: Floats, deviations: Floats, joints: Sequence
     ]
     for index, parameter in enumerate(space.parameters):
         kind = KINDS[parameter.kind]
-        if deviations[index] <= open_beyond(parameter):
+        if deviations[index] <= open_beyond(parameter, limits):
             continue
         known = (
             f"known to a factor of {np.exp(min(deviations[index], 7.0)):.2g} only"

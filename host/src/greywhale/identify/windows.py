@@ -17,21 +17,16 @@ from greywhale import _native
 from greywhale.arm import ArmParameters
 from greywhale.arm.plants import column
 from greywhale.base.types import Floats
-from greywhale.identify.data import BLOCK_S, STEP_S, WINDOW_S, Prepared, Windows, part_of, some_windows, windows_of
+from greywhale.identify.data import STEP_S, Prepared, Windows, part_of, some_windows, windows_of
+from greywhale.identify.limits import IDENTIFICATION_LIMITS, DataLimits
 from greywhale.identify.space import Space
 from greywhale.protocol.firmware import JOINTS
 
-# A start speed may be off by so much beyond what noise explains (rad/s): motion within the smoothing.
-SPEED_DOUBT = 0.05
 # The places at which a motor may stand in its gap at a window's start, or a joint in its potentiometer's play.
 # They are shares of half of it.
 SIDES = (-1.0, -0.5, 0.0, 0.5, 1.0)
-# Another side is taken only if it leaves less than this share of the squared difference.
-WORTH_A_CHANGE = 0.95
 # The formula for starts is linear, the gap is not.
 START_PASSES = 2
-# More windows (of half a second) than this would take longer, and hardly tell more.
-MOST_WINDOWS = 120
 
 
 class WindowResidual:
@@ -46,10 +41,14 @@ class WindowResidual:
         every: int = 1,
         longest_step: float = STEP_S,
     ) -> None:
-        """At most about MOST_WINDOWS windows of the logs, those held out or the others; of these, one in `every`."""
+        """At most about so many windows of the logs as their limits say, those held out or the others; of these, one in
+        `every`.
+        """
         self.joints = list(joints)
+        self.limits = logs[0].limits if logs else IDENTIFICATION_LIMITS
+        data = self.limits.data
         self._body = _native.Arm(arm.native()).body
-        parts = [_part(numbers, held_out, every) for numbers in some_windows(logs, MOST_WINDOWS)]
+        parts = [_part(numbers, held_out, every, data) for numbers in some_windows(logs, data.max_windows)]
         self._pieces = [(windows_of(log, part, longest_step), log) for part, log in zip(parts, logs, strict=True)]
         self._pieces = [piece for piece in self._pieces if len(piece[0].first)]
         self._logged = tuple(self._pieces)
@@ -92,7 +91,7 @@ class WindowResidual:
         windows, log = self._pieces[number]
         tried = np.array([self._sides[number], *(np.full_like(windows.angles, side) for side in SIDES)])
         costs = np.array([self._costs(windows, log, sides, plant, zero)[0] for sides in tried])
-        self._sides[number], changed = _choose(tried, costs)
+        self._sides[number], changed = _choose(tried, costs, self.limits.windows.worth_a_change)
         return changed
 
     def _settle_places(self, number: int, plant: Floats, zero: Floats) -> bool:
@@ -102,7 +101,7 @@ class WindowResidual:
         known = self._places.get(number, windows.places)
         tried = np.array([known, *(np.full_like(windows.angles, side) for side in SIDES)])
         costs = np.array([self._costs(replace(windows, places=one), log, sides, plant, zero)[0] for one in tried])
-        self._places[number], changed = _choose(tried, costs)
+        self._places[number], changed = _choose(tried, costs, self.limits.windows.worth_a_change)
         self._pieces[number] = replace(windows, places=self._places[number]), log
         return changed
 
@@ -139,7 +138,7 @@ class WindowResidual:
             costs[:, joint] = np.sum(readings.reshape(count, -1) ** 2, axis=1)
             costs[:, joint] += np.sum(starts.reshape(2, -1) ** 2, axis=0)
             angles[:, joint] = starts[:count] * log.noise[joint]
-            velocities[:, joint] = starts[count:] * SPEED_DOUBT
+            velocities[:, joint] = starts[count:] * self.limits.windows.speed_doubt_rad_s
         return costs, angles, velocities
 
     def misfit(self, plant: Floats, zero: Floats) -> Floats:
@@ -212,9 +211,9 @@ class WindowResidual:
         return sides
 
 
-def _choose(tried: Floats, costs: Floats) -> tuple[Floats, bool]:
+def _choose(tried: Floats, costs: Floats, worth_a_change: float) -> tuple[Floats, bool]:
     """For each window and joint the best of (tries, windows, 4); the first stays unless another is clearly better."""
-    best = np.where(np.min(costs, axis=0) < WORTH_A_CHANGE * costs[0], np.argmin(costs, axis=0), 0)
+    best = np.where(np.min(costs, axis=0) < worth_a_change * costs[0], np.argmin(costs, axis=0), 0)
     chosen: Floats = np.ascontiguousarray(np.take_along_axis(tried, best[None], axis=0)[0])
     return chosen, bool(np.any(best))
 
@@ -230,7 +229,7 @@ def take_off_starts(error: Floats, windows: Windows, log: Prepared, plants: Floa
     lag = (plants[:, column("inertia", joint)] / plants[:, column("damping", joint)])[:, None]
     speed = lag * -np.expm1(-windows.time[None, :] / lag)
     basis = np.stack([np.ones_like(speed), speed], axis=1)  # (n, 2, rows)
-    doubt = np.array([noise, SPEED_DOUBT])
+    doubt = np.array([noise, log.limits.windows.speed_doubt_rad_s])
     normal = basis @ basis.transpose(0, 2, 1) / noise**2 + np.diag(1.0 / doubt**2)
     right = basis @ error.transpose(0, 2, 1) / noise**2
     best = np.linalg.solve(normal, right)  # (n, 2, windows)
@@ -238,7 +237,8 @@ def take_off_starts(error: Floats, windows: Windows, log: Prepared, plants: Floa
     return np.concatenate([left.reshape(count, -1), (best / doubt[None, :, None]).reshape(count, -1)], axis=1)
 
 
-def _part(numbers: NDArray[np.intp], held_out: bool | None, every: int) -> NDArray[np.intp]:
+def _part(numbers: NDArray[np.intp], held_out: bool | None, every: int, limits: DataLimits) -> NDArray[np.intp]:
     if held_out is not None:
-        numbers = numbers[part_of(len(numbers), round(BLOCK_S / WINDOW_S), held_out)]
+        per_block = round(limits.block_s / limits.window_s)
+        numbers = numbers[part_of(len(numbers), per_block, held_out, limits.held_out_every)]
     return numbers[::every]

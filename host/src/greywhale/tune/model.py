@@ -24,7 +24,7 @@ from greywhale.protocol.joints import require_same
 from greywhale.protocol.schema import Board
 from greywhale.protocol.table import ParameterTable
 from greywhale.tune import model_checks as checks
-from greywhale.tune.limits import TUNING_LIMITS, ModelLimits, TuningLimits
+from greywhale.tune.limits import TUNING_LIMITS, TuningLimits
 from greywhale.tune.model_checks import Doubt, Identification
 from greywhale.tune.model_edits import UNSEALED, doubt_edits
 from greywhale.tune.travel import Travel, travel_of
@@ -80,7 +80,7 @@ def load_model(
     facts = checks.identification_of(identified, str(path))
     table, table_doubts = _table(identified, facts, params)
     require_same(str(path), identified.joints_in_use, table.name, table.joints_in_use)
-    doubts = _doubts(identified, facts, table, arm, judging.model)
+    doubts = _doubts(identified, facts, table, arm, judging)
     plants = plant_row(identified)[None]
     travel = None
     if facts is not None and facts.covariance is not None:
@@ -92,7 +92,9 @@ def load_model(
     doubts += table_doubts
     if doubts and not force:
         raise UserError(_refusal(str(path), doubts))
-    remarks = (*facts.remarks(), *([UNSEALED] if facts.seal is None else [])) if facts is not None else ()
+    remarks: tuple[str, ...] = ()
+    if facts is not None:
+        remarks = (*facts.remarks(judging.identification.judge), *([UNSEALED] if facts.seal is None else []))
     return Model(
         name=identified.name,
         arm=identified,
@@ -110,18 +112,18 @@ def _doubts(
     facts: Identification | None,
     table: ParameterTable,
     wanted: str | Path | None,
-    limits: ModelLimits,
+    judging: TuningLimits,
 ) -> list[Doubt]:
     """Everything that speaks against the model, the gravest first."""
     doubts = list(checks.doubt_completeness(facts))
     if facts is not None:
-        doubts += doubt_edits(arm, facts, limits)
-        doubts += checks.doubt_validation(facts)
+        doubts += doubt_edits(arm, facts, judging.model)
+        doubts += checks.doubt_validation(facts, judging.identification.judge)
         doubts += checks.doubt_behaviour(facts)
         doubts += checks.doubt_missing_covariance(arm, facts)
     if wanted is not None:
         doubts += checks.doubt_other_arm(arm, load_arm(wanted), str(wanted))
-    return [*doubts, *checks.doubt_other_board(arm, facts, table, limits)]
+    return [*doubts, *checks.doubt_other_board(arm, facts, table, judging.model)]
 
 
 def _table(

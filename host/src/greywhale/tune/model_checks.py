@@ -16,6 +16,7 @@ from greywhale.base.errors import UserError
 from greywhale.base.types import Floats
 from greywhale.identify import sampled_plants
 from greywhale.identify.judge import FIT, LogVerdict, warnings_of
+from greywhale.identify.limits import JudgeLimits
 from greywhale.identify.uncertainty import EXCITATION
 from greywhale.loop import Experiment, human_reaches, plant_row
 from greywhale.loop.controllers import controllers_of
@@ -58,11 +59,10 @@ class LogFacts(_Facts):
     period_ms: int | None = None
     parameter_crc: str | None = None
 
-    @property
-    def verdict(self) -> LogVerdict:
+    def verdict(self, limits: JudgeLimits) -> LogVerdict:
         """What the identification said about this log."""
         pairs = self.white_box_mse_rad2, self.model_mse_rad2
-        return LogVerdict(self.name, self.role, self.measure, *pairs, chance=self.chance_rad2)
+        return LogVerdict(self.name, self.role, self.measure, *pairs, chance=self.chance_rad2, limits=limits)
 
 
 class ParameterFacts(_Facts):
@@ -101,9 +101,9 @@ class Identification(_Facts):
         crcs = {log.parameter_crc for log in self.log if log.role == FIT}
         return defaults if crcs == {f"0x{defaults.crc:04x}"} else None
 
-    def remarks(self) -> tuple[str, ...]:
+    def remarks(self, limits: JudgeLimits) -> tuple[str, ...]:
         """The identification's warnings, without those that follow from the logs' numbers, which are judged here."""
-        known = warnings_of([log.verdict for log in self.log])
+        known = warnings_of([log.verdict(limits) for log in self.log])
         return tuple(warning for warning in self.warnings if warning not in known)
 
 
@@ -136,7 +136,7 @@ def doubt_completeness(facts: Identification | None) -> Iterator[Doubt]:
         yield Doubt(f'its identification is "{facts.status}"', "identify again and let it end")
 
 
-def doubt_validation(facts: Identification) -> Iterator[Doubt]:
+def doubt_validation(facts: Identification, limits: JudgeLimits) -> Iterator[Doubt]:
     """Doubt a model for which no log speaks but the fitted ones."""
     others = [log for log in facts.log if log.role != FIT]
     if not others:
@@ -144,7 +144,8 @@ def doubt_validation(facts: Identification) -> Iterator[Doubt]:
             "it was not validated on a second log",
             "record another one and identify again with --validate SECOND.csv",
         )
-    poor = [log.verdict for log in others if log.verdict.is_worse]
+    verdicts = [log.verdict(limits) for log in others]
+    poor = [verdict for verdict in verdicts if verdict.is_worse]
     if not poor:
         return
     worst = min(poor, key=lambda verdict: verdict.improvement)

@@ -20,9 +20,10 @@ from greywhale.base.errors import BadUsage, UserError, require_within
 from greywhale.base.types import Floats, Progress, show_no_progress
 from greywhale.files.trajectory import Trajectory
 from greywhale.identify.excite.information import information, natural_sizes, prior
-from greywhale.identify.excite.limits import MARGIN_RAD, Limits, family, limits_of
+from greywhale.identify.excite.limits import Limits, family, limits_of
 from greywhale.identify.excite.multisine import LONGEST_S, SHORTEST_S, Shape
 from greywhale.identify.excite.trial import ROW_S, Trial, try_motion
+from greywhale.identify.limits import IDENTIFICATION_LIMITS, IdentificationLimits
 from greywhale.identify.samples import read_search
 from greywhale.identify.space import MOTOR, Parameter, Space
 from greywhale.identify.uncertainty import open_beyond
@@ -35,10 +36,7 @@ MOST_BUDGET = 100_000  # takes a day
 SECONDS = 20.0
 # The quantities that count where an arm file does not say what is known: as in a usual identification.
 USUAL = (*MOTOR, "coulomb", "breakaway", "gap", "teeth")
-# Cost of a lag or an overshoot of twice the limit: more than any information is worth.
-PENALTY = 50.0
-# A motion that is not safe on some arm is shrunk towards the pose by this factor, again and again.
-SHRINK, SHRINKS = 0.9, 30
+SHRINKS = 30  # of a motion that is not safe on some arm, one after the other
 
 
 @dataclass(frozen=True)
@@ -51,6 +49,7 @@ class Problem:
     known: Floats  # information before, (n, n)
     table: ParameterTable
     limits: Limits
+    judging: IdentificationLimits = IDENTIFICATION_LIMITS
 
     @classmethod
     def of(
@@ -60,28 +59,31 @@ class Problem:
         pose: Floats,
         ranges: Mapping[int, tuple[float, float]],
         seed: int,
+        judging: IdentificationLimits = IDENTIFICATION_LIMITS,
     ) -> Problem:
-        limits = limits_of(arm, table, pose, ranges)
+        limits = limits_of(arm, table, pose, ranges, judging.excitation)
         if "covariance" in (arm.identification or {}):
             space, _, covariance = read_search(arm)
             nominal, known = plant_row(arm), prior(space.parameters, covariance, space.doubts())
         else:
             space = Space.of(arm, USUAL, arm.joints_in_use)
             nominal, known = space.plants(space.start()[None])[0], np.diag(space.doubts() ** -2.0)
-        return cls(space.parameters, family(arm, seed), nominal, known, table, limits)
+        plants = family(arm, seed, judging.excitation)
+        return cls(space.parameters, plants, nominal, known, table, limits, judging)
 
     def judge(self, angles: Floats) -> Judgement:
         """Judge points (rows, 4) rad, 16 ms apart."""
         tried = try_motion(angles, self.table, self.plants)
-        told = information(self.nominal, tried.angles[0], ROW_S, self.parameters) + self.known
+        told = information(self.nominal, tried.angles[0], ROW_S, self.parameters, self.judging) + self.known
         size = natural_sizes(self.parameters)
         log_det = float(np.linalg.slogdet(told * np.outer(size, size))[1])
-        return Judgement(log_det, np.sqrt(np.diag(np.linalg.inv(told))), tried, self._excess(tried))
+        price = self.judging.excitation.unsafe_price
+        return Judgement(log_det, np.sqrt(np.diag(np.linalg.inv(told))), tried, self._excess(tried), price)
 
     def _excess(self, tried: Trial) -> float:
         """The share by which the worst arm of the family exceeds its allowed lag or range; 0 where none does."""
         beyond = np.maximum(self.limits.low - tried.angles.min(axis=1), tried.angles.max(axis=1) - self.limits.high)
-        lag, overshoot = tried.lag.max() / self.limits.lag, beyond.max() / MARGIN_RAD
+        lag, overshoot = tried.lag.max() / self.limits.lag, beyond.max() / self.judging.excitation.margin_rad
         return max(0.0, float(max(lag, overshoot)) - 1.0)
 
 
@@ -93,10 +95,11 @@ class Judgement:
     deviations: Floats
     tried: Trial = field(repr=False)
     excess: float
+    price: float  # of an excess of 1
 
     @property
     def cost(self) -> float:
-        return -0.5 * self.log_det + PENALTY * self.excess
+        return -0.5 * self.log_det + self.price * self.excess
 
 
 @dataclass(frozen=True)
@@ -111,7 +114,8 @@ class Design:
     def left_open(self) -> list[str]:
         """Names of parameters that this motion will not settle either, by the arm file."""
         rows = zip(self.problem.parameters, self.judgement.deviations, strict=True)
-        return [one.name for one, deviation in rows if deviation > open_beyond(one)]
+        limits = self.problem.judging.uncertainty
+        return [one.name for one, deviation in rows if deviation > open_beyond(one, limits)]
 
     def text(self) -> str:
         """One sentence."""
@@ -136,6 +140,7 @@ def design(
     seed: int = 0,
     budget: int = BUDGET,
     report: Progress | None = None,
+    judging: IdentificationLimits = IDENTIFICATION_LIMITS,
 ) -> Design:
     """Search a motion from `pose` (4,) rad and back to it, for a board with this parameter table.
 
@@ -145,15 +150,15 @@ def design(
     check_effort(seconds, budget)
     at = np.asarray(pose, dtype=np.float64)
     running = table or ParameterTable.defaults().with_joints(arm.joints_in_use)
-    problem = Problem.of(arm, running, at, ranges or {}, seed)
-    shape = Shape(problem.limits, seconds)
+    problem = Problem.of(arm, running, at, ranges or {}, seed, judging)
+    shape = Shape(problem.limits, seconds, judging.excitation)
     best = _search(problem, shape, seed, budget, report or show_no_progress)
     angles = shape.angles(best)
     judged = problem.judge(angles)
     for _ in range(SHRINKS):
         if judged.excess == 0.0:
             return Design(shape.trajectory(angles), problem, judged, budget)
-        angles = at + SHRINK * (angles - at)
+        angles = at + judging.excitation.shrink * (angles - at)
         judged = problem.judge(angles)
     raise UserError(
         f"no motion was found that every arm like {arm.name} can follow with the controllers on the board: a joint "

@@ -19,19 +19,22 @@ from greywhale.arm.body import Body
 from greywhale.arm.parameters import USUAL_NOISE_V, USUAL_TRACK_RAD
 from greywhale.arm.plants import column
 from greywhale.base.types import Floats
+from greywhale.identify.limits import IDENTIFICATION_LIMITS, IdentificationLimits
 from greywhale.identify.space import KINDS, Parameter
 from greywhale.protocol.firmware import CONVERSIONS, JOINTS
 
-# A reading's standard deviation (rad), and how far a start speed may be off beyond noise (rad/s), as in identification.
+# A reading's standard deviation (rad).
 NOISE_RAD = USUAL_NOISE_V / 5.0 * USUAL_TRACK_RAD / math.sqrt(CONVERSIONS)
-SPEED_DOUBT = 0.05
-WINDOW_S = 0.5
-# Below this speed (rad/s) friction may have any value within its limits and shows nothing.
-STILL_RAD_S = 0.01
 _STEP = 1e-3  # rad, for the derivative by a zero angle
 
 
-def information(plant: Floats, angles: Floats, row_s: float, parameters: Sequence[Parameter]) -> Floats:
+def information(
+    plant: Floats,
+    angles: Floats,
+    row_s: float,
+    parameters: Sequence[Parameter],
+    judging: IdentificationLimits = IDENTIFICATION_LIMITS,
+) -> Floats:
     """What a follower's motion shows about `parameters`, joint by joint, (n, n) over the searched numbers.
 
     The motion is angles (rows, 4) rad every `row_s` seconds, on a plant (columns,).
@@ -41,18 +44,18 @@ def information(plant: Floats, angles: Floats, row_s: float, parameters: Sequenc
     body = Body.of(plant)
     torque = body.torque(angles, velocity, acceleration)
     inertia = np.diagonal(body.mass_matrix(angles), axis1=1, axis2=2).mean(axis=0)
-    rows = round(WINDOW_S / row_s)
+    rows = round(judging.data.window_s / row_s)
     matrix = np.zeros((len(parameters), len(parameters)))
     for joint in range(JOINTS):
         here = [index for index, one in enumerate(parameters) if one.joint == joint]
         if not here:
             continue
-        motion = _Motion(body, plant, joint, angles, velocity, acceleration[:, joint], torque[:, joint])
+        motion = _Motion(body, plant, joint, angles, velocity, acceleration[:, joint], torque[:, joint], judging)
         volts = np.column_stack([motion.volts(parameters[index].kind) for index in here])
         shift = np.column_stack([motion.shift(parameters[index].kind) for index in here])
         push = _response(plant, joint, float(inertia[joint]), rows, row_s)
         seen = push @ _windows(volts, rows) + _windows(shift, rows)
-        left = _without_start(plant, joint, float(inertia[joint]), rows, row_s)
+        left = _without_start(plant, joint, float(inertia[joint]), rows, row_s, judging)
         matrix[np.ix_(here, here)] = (seen.transpose(0, 2, 1) @ (left @ seen)).sum(axis=0)
     return matrix
 
@@ -68,11 +71,12 @@ class _Motion:
     v: Floats
     a: Floats
     torque: Floats
+    judging: IdentificationLimits
 
     def volts(self, kind: str) -> Floats:
         """(rows,) V by which a unit of the searched number changes the voltage that the motion takes."""
         alpha, speed = 1.0 / self._of("torque_per_volt"), self.v[:, self.joint]
-        sliding: Floats = np.tanh(speed / STILL_RAD_S)
+        sliding: Floats = np.tanh(speed / self.judging.excitation.still_rad_s)
         coulomb = alpha * self._of("coulomb")
         excess = max(alpha * self._of("breakaway") - coulomb, 0.0)
         ratio: Floats = (speed / self._of("stribeck_velocity")) ** 2
@@ -133,12 +137,14 @@ def _response(plant: Floats, joint: int, inertia: float, rows: int, row_s: float
     return np.where(since > 0.0, pulse, 0.0)
 
 
-def _without_start(plant: Floats, joint: int, inertia: float, rows: int, row_s: float) -> Floats:
+def _without_start(
+    plant: Floats, joint: int, inertia: float, rows: int, row_s: float, judging: IdentificationLimits
+) -> Floats:
     """(rows, rows): the information of readings in a window whose start angle and speed are known poorly."""
     lag = _lag(plant, joint, inertia)
     time_s = np.arange(rows) * row_s
     basis = np.column_stack([np.ones(rows), lag * -np.expm1(-time_s / lag)])
-    doubt = np.diag([NOISE_RAD**-2.0, SPEED_DOUBT**-2.0])
+    doubt = np.diag([NOISE_RAD**-2.0, judging.windows.speed_doubt_rad_s**-2.0])
     # The identification compares every 5 ms; fewer rows here stand for those.
     weight = row_s / 5e-3 / NOISE_RAD**2
     normal = weight * basis.T @ basis + doubt

@@ -12,29 +12,15 @@ from greywhale.arm.body import Body
 from greywhale.base.errors import BadUsage, UserError
 from greywhale.base.types import Floats
 from greywhale.identify import sampled_plants
+from greywhale.identify.limits import IDENTIFICATION_LIMITS, ExcitationLimits
 from greywhale.identify.space import MOTOR, Space
 from greywhale.loop import plant_row
 from greywhale.protocol.firmware import FASTEST_LED_RAD_S, JOINTS
 from greywhale.protocol.joints import require_same
 from greywhale.protocol.table import ParameterTable
 
-# Without --range a joint moves at most this far to either side of where it is (rad).
-REACH_RAD = 1.0
-# This distance to a limit of the parameter table or a stop of the arm stays free (rad).
-MARGIN_RAD = 0.1
-# A narrower range shows nothing.
-NARROWEST_RAD = 0.2
 FARTHEST_RAD = 7.0  # beyond any potentiometer's track
-# The shares of the voltage that speed and acceleration may take.
-SPEED_SHARE, ACCELERATION_SHARE = 0.5, 0.5
-FASTEST = min(4.0, FASTEST_LED_RAD_S / 1.5)
-# The share of the board's tracking limit by which the follower may lag in simulation; from half of it the player slows.
-LAG_SHARE = 0.4
-USUAL_TRACKING_RAD = 0.9
-# A motor may be wrong by this much in the arm file (logarithm, uniform), on the arms on which the motion is tried.
-DOUBT = 0.7
-FAMILY = 15
-FRICTION_V = (0.2, 0.9)
+FAMILY = 15  # arms on which a motion is tried
 
 
 @dataclass(frozen=True)
@@ -50,7 +36,11 @@ class Limits:
 
 
 def limits_of(
-    arm: ArmParameters, table: ParameterTable, pose: Floats, ranges: Mapping[int, tuple[float, float]]
+    arm: ArmParameters,
+    table: ParameterTable,
+    pose: Floats,
+    ranges: Mapping[int, tuple[float, float]],
+    wanted: ExcitationLimits = IDENTIFICATION_LIMITS.excitation,
 ) -> Limits:
     """The limits of a motion from `pose` (rad) with the board's parameter table and the user's ranges (rad).
 
@@ -63,35 +53,43 @@ def limits_of(
     low, high = np.zeros(JOINTS), np.zeros(JOINTS)
     for joint in arm.joints_in_use:
         stops = arm.joint[joint].stops
-        least = max(table.physical(f"joint{joint}.limit_min"), stops.min) + MARGIN_RAD
-        most = min(table.physical(f"joint{joint}.limit_max"), stops.max) - MARGIN_RAD
-        low[joint], high[joint] = _range(joint, pose[joint], ranges.get(joint), least, most)
-    speed, acceleration = _strength(arm, table, low, high)
-    tracking = table.physical("tracking_limit") or USUAL_TRACKING_RAD
-    return Limits(pose, low, high, speed, acceleration, LAG_SHARE * min(tracking, USUAL_TRACKING_RAD))
+        least = max(table.physical(f"joint{joint}.limit_min"), stops.min) + wanted.margin_rad
+        most = min(table.physical(f"joint{joint}.limit_max"), stops.max) - wanted.margin_rad
+        low[joint], high[joint] = _range(joint, pose[joint], ranges.get(joint), least, most, wanted)
+    speed, acceleration = _strength(arm, table, low, high, wanted)
+    tracking = table.physical("tracking_limit") or wanted.usual_tracking_rad
+    lag = wanted.lag_share * min(tracking, wanted.usual_tracking_rad)
+    return Limits(pose, low, high, speed, acceleration, lag)
 
 
 def _range(
-    joint: int, pose: float, asked: tuple[float, float] | None, least: float, most: float
+    joint: int,
+    pose: float,
+    asked: tuple[float, float] | None,
+    least: float,
+    most: float,
+    wanted: ExcitationLimits,
 ) -> tuple[float, float]:
-    low, high = asked if asked is not None else (pose - REACH_RAD, pose + REACH_RAD)
+    low, high = asked if asked is not None else (pose - wanted.reach_rad, pose + wanted.reach_rad)
     low, high = max(low, least), min(high, most)
     if not low <= pose <= high:
         raise UserError(
             f"joint {joint} is at {pose:.2f} rad, outside of the range {low:.2f} to {high:.2f} rad that its limits, "
             "the arm's stops and --range leave; move it inside, or give another --range."
         )
-    if high - low < NARROWEST_RAD:
+    if high - low < wanted.narrowest_rad:
         raise UserError(
-            f"the range of joint {joint} is {low:.2f} to {high:.2f} rad, less than {NARROWEST_RAD:g} rad; give a wider "
-            "--range, or move the joint away from its limit."
+            f"the range of joint {joint} is {low:.2f} to {high:.2f} rad, less than {wanted.narrowest_rad:g} rad; give "
+            "a wider --range, or move the joint away from its limit."
         )
     return low, high
 
 
-def _strength(arm: ArmParameters, table: ParameterTable, low: Floats, high: Floats) -> tuple[Floats, Floats]:
+def _strength(
+    arm: ArmParameters, table: ParameterTable, low: Floats, high: Floats, wanted: ExcitationLimits
+) -> tuple[Floats, Floats]:
     """The speeds and accelerations for which a part of the voltage is enough, by the arm file."""
-    body = Body.of(plant_row(arm))
+    body, fastest = Body.of(plant_row(arm)), min(wanted.max_speed_rad_s, FASTEST_LED_RAD_S / 1.5)
     random = np.random.default_rng(0)
     poses = random.uniform(low, high, (200, JOINTS))
     still = np.zeros_like(poses)
@@ -109,12 +107,12 @@ def _strength(arm: ArmParameters, table: ParameterTable, low: Floats, high: Floa
                 f"by the arm file the motor of joint {joint} can hardly lift its own weight: {weight:.1f} V of "
                 f"{volts:.1f} V; narrow its --range, or correct the arm file."
             )
-        speed[joint] = min(FASTEST, SPEED_SHARE * free / (alpha * motor.damping))
-        acceleration[joint] = ACCELERATION_SHARE * free / (alpha * (motor.inertia + inertia[joint]))
+        speed[joint] = min(fastest, wanted.speed_share * free / (alpha * motor.damping))
+        acceleration[joint] = wanted.acceleration_share * free / (alpha * (motor.inertia + inertia[joint]))
     return speed, acceleration
 
 
-def family(arm: ArmParameters, seed: int = 0) -> Floats:
+def family(arm: ArmParameters, seed: int = 0, wanted: ExcitationLimits = IDENTIFICATION_LIMITS.excitation) -> Floats:
     """Plants (1 + 15, columns): the arm itself, then arms that it might be.
 
     For an identified model they are drawn from its covariance. For an arm file their motors are wrong by up to a factor
@@ -125,9 +123,10 @@ def family(arm: ArmParameters, seed: int = 0) -> Floats:
     space = Space.of(arm, (*MOTOR, "coulomb"), arm.joints_in_use)
     x = space.start()
     random = np.random.default_rng(seed)
-    points = x + random.uniform(-DOUBT, DOUBT, (FAMILY, len(x)))
+    doubt = wanted.motor_doubt_log
+    points = x + random.uniform(-doubt, doubt, (FAMILY, len(x)))
     friction = [index for index, one in enumerate(space.parameters) if one.kind == "coulomb"]
-    points[:, friction] = np.log(random.uniform(*FRICTION_V, (FAMILY, len(friction))))
+    points[:, friction] = np.log(random.uniform(*wanted.friction_v, (FAMILY, len(friction))))
     return np.vstack([space.plants(x[None]), space.plants(points)])
 
 

@@ -16,20 +16,11 @@ import numpy as np
 from greywhale.base.types import Floats
 from greywhale.files.trajectory import Trajectory
 from greywhale.identify.excite.limits import Limits
+from greywhale.identify.limits import IDENTIFICATION_LIMITS, ExcitationLimits
 from greywhale.loop.leader_motions import minimum_jerk
 from greywhale.protocol.firmware import JOINTS, POINT_S
 
 SINES = 6
-LOWEST_HZ, HIGHEST_HZ = 0.1, 3.0
-# Fading in and out takes this long (s), but at most this share of a short motion.
-FADE_S, FADE_SHARE = 1.5, 0.2
-# At rest before and after (s).
-REST_S = 0.3
-# Now and then everything stands still, so that friction at rest, creeping and hunting show: how often (1/s), and how
-# long (s) from slowing down to being at speed again.
-PAUSES_PER_S, PAUSE_S = 0.2, 1.2
-# Amplitudes differ by up to e to the power of this, before frequency.
-SPREAD = 3.0
 SHORTEST_S, LONGEST_S = 4.0, 600.0
 
 
@@ -39,6 +30,7 @@ class Shape:
 
     limits: Limits
     seconds: float
+    wanted: ExcitationLimits = IDENTIFICATION_LIMITS.excitation
 
     @property
     def size(self) -> int:
@@ -47,9 +39,10 @@ class Shape:
     @property
     def frequencies(self) -> Floats:
         """(joints, sines) Hz, even over the octaves. No two joints share one, so that they can be told apart."""
-        lowest = max(LOWEST_HZ, 1.0 / self.seconds)
+        lowest, highest = self.wanted.frequencies_hz
+        lowest = max(lowest, 1.0 / self.seconds)
         place = (np.arange(SINES)[None, :] + np.arange(JOINTS)[:, None] / JOINTS) / (SINES - 1 + 0.75)
-        return lowest * (HIGHEST_HZ / lowest) ** place
+        return lowest * (highest / lowest) ** place
 
     @property
     def time_s(self) -> Floats:
@@ -59,7 +52,7 @@ class Shape:
         """(points, 4) rad, 16 ms apart."""
         numbers = np.clip(numbers, -1.0, 1.0).reshape(2, JOINTS, SINES)
         fade, time_s = self._fade(self.time_s), self._played_time
-        weights = np.exp(SPREAD * numbers[0]) / self.frequencies
+        weights = np.exp(self.wanted.amplitude_spread_log * numbers[0]) / self.frequencies
         phases = np.pi * numbers[1]
         angles = np.zeros((len(fade), JOINTS))
         limits = self.limits
@@ -77,9 +70,9 @@ class Shape:
         """Time on the multi-sine's own clock, which stands still in the pauses, (points,) s."""
         time_s = self.time_s
         pace = np.ones(len(time_s))
-        count = int(PAUSES_PER_S * self.seconds)
+        count = int(self.wanted.pauses_per_s * self.seconds)
         for middle in self.seconds * (np.arange(count) + 0.5) / max(count, 1):
-            near = np.abs(time_s - middle) / (PAUSE_S / 2.0)
+            near = np.abs(time_s - middle) / (self.wanted.pause_s / 2.0)
             pace *= minimum_jerk(2.0 * near - 1.0)
         return np.cumsum(pace) * POINT_S
 
@@ -87,8 +80,8 @@ class Shape:
         return Trajectory(self.time_s, angles)
 
     def _fade(self, time_s: Floats) -> Floats:
-        fade_s = min(FADE_S, FADE_SHARE * self.seconds)
-        return minimum_jerk((time_s - REST_S) / fade_s) * minimum_jerk((self.seconds - REST_S - time_s) / fade_s)
+        fade_s, rest_s = min(self.wanted.fade_s, self.wanted.fade_share * self.seconds), self.wanted.rest_s
+        return minimum_jerk((time_s - rest_s) / fade_s) * minimum_jerk((self.seconds - rest_s - time_s) / fade_s)
 
     def _shrink_factor(self, way: Floats, joint: int) -> float:
         """The factor, at most 1, that keeps speed and acceleration."""

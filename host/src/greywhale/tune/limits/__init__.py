@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 
 from greywhale.base.limits import limit
+from greywhale.identify.limits import IDENTIFICATION_LIMITS, IdentificationLimits
 from greywhale.tune.limits.judge import ChoiceLimits, FloorLimits, MarginLimits
 from greywhale.tune.limits.model import ModelLimits, TravelLimits
 from greywhale.tune.limits.search import CostLimits, SpaceLimits, TrainingLimits
@@ -44,6 +45,7 @@ class TuningLimits:
     floor: FloorLimits = field(default=FloorLimits())
     margins: MarginLimits = field(default=MarginLimits())
     choice: ChoiceLimits = field(default=ChoiceLimits())
+    identification: IdentificationLimits = IDENTIFICATION_LIMITS  # of the models that it is for
 
 
 TUNING_LIMITS = TuningLimits()

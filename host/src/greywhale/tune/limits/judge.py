@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from greywhale.base.limits import BY_DEFINITION, MEASURED_IN_TIME, MEASURED_ON_ARMS, limit
+from greywhale.base.limits import BY_DEFINITION, MEASURED_IN_SEARCHES, MEASURED_ON_ARMS, limit
 
 
 @dataclass(frozen=True)
@@ -24,9 +24,11 @@ class FloorLimits:
     )
     nothing_to_gain_rad2: float = limit(1e-4, "rad² in total", "below this no brake is tried")
     rest_s: float = limit(0.3, "s", "the leader rests for so long before a move that bounds the error")
-    rest_rad: float = limit(0.004, "rad", "within this")
+    rest_rad: float = limit(0.004, "rad", "the leader rests within this")
     waiting_rad: float = limit(0.01, "rad", "the follower waits for the leader when it is this close to it")
-    waiting_rad_s: float = limit(0.05, "rad/s", "and this slow; otherwise a move gives no bound")
+    waiting_rad_s: float = limit(
+        0.05, "rad/s", "the follower waits when it is this slow; otherwise a move gives no bound"
+    )
 
 
 @dataclass(frozen=True)
@@ -39,16 +41,18 @@ class MarginLimits:
     teeth_stiffness_divisor: float = limit(
         4.0, "times", "softer teeth have so much less stiffness: recordings show it least of all"
     )
-    teeth_damping_divisor: float = limit(8.0, "times", "and so much less damping")
+    teeth_damping_divisor: float = limit(8.0, "times", "softer teeth have so much less damping")
     stop_shares: tuple[float, ...] = limit(
         (0.8, -0.2), "of the reach", "where the leader stops; all joints move together, so all are shaken"
     )
     first_s: float = limit(0.2, "s", "the leader rests this long before its first move")
     rest_s: float = limit(2.2, "s", "a rest in the first search")
-    long_rest_s: float = limit(4.0, "s", "a rest later on, and in the judgement: an integral swings slowly")
+    long_rest_s: float = limit(
+        4.0, "s", "a rest later on, and in the judgement: an integral swings slowly", MEASURED_IN_SEARCHES
+    )
     search_beyond: float = limit(1.15, "times", "a search keeps clear of the border: its gains are further off")
-    search_chatter_share: float = limit(0.7, "of the limit", "and less chatter already costs")
-    search_ripple_share: float = limit(0.9, "of the limit", "and less ripple")
+    search_chatter_share: float = limit(0.7, "of the limit", "a search already pays for this much chatter")
+    search_ripple_share: float = limit(0.9, "of the limit", "a search already pays for this much ripple")
     travel_price: float = limit(0.5, "of what is possible", "for each rad/s of swinging in a limit cycle")
     chatter_price: float = limit(0.03, "of what is possible", "for as much chatter at rest as is allowed")
     fail_price: float = limit(0.15, "of what is possible", "for a scenario that fails")
@@ -83,15 +87,14 @@ class ChoiceLimits:
         1.05,
         "times the cost before",
         "a joint that keeps its controller may lose so much before its neighbours step back",
+        MEASURED_IN_SEARCHES,
     )
     enough_gain_share: float = limit(
         0.5,
         "of what each joint could gain alone",
         "another way is tried if together the joints gain less",
     )
-    second_chances: int = limit(
-        3, "candidates", "a joint that fails gets so many others, the best first", MEASURED_IN_TIME
-    )
+    second_chances: int = limit(3, "candidates", "a joint that fails gets so many others, the best first")
     gain_reductions: tuple[tuple[float, float], ...] = limit(
         (
             *((1.0, ki) for ki in (0.5, 0.2, 0.0)),
@@ -103,6 +106,7 @@ class ChoiceLimits:
         "of the best's Ku and Ki",
         "these compete too: full voltage may shake gears, and an integral swing in friction, that were quiet in the "
         "search",
+        MEASURED_IN_SEARCHES,
     )
     unfit_cost: float = limit(
         100.0, "", "of a joint that falls short of the standard: more than any controller costs", BY_DEFINITION
@@ -115,5 +119,7 @@ class ChoiceLimits:
     same_ripple: float = limit(
         1.05, "times", "ripple is a figure of noise: the same controller differs so much from one noise to another"
     )
-    shaken_ripple: float = limit(1.25, "times", "and so much where quicker neighbours shake the joint")
+    shaken_ripple: float = limit(
+        1.25, "times", "ripple may be so much more where quicker neighbours shake a joint", MEASURED_IN_SEARCHES
+    )
     worse_in_report: float = limit(1.02, "times the error before", "the report calls an error worse from here on")

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from greywhale.base.limits import limit
+from greywhale.base.limits import MEASURED_IN_SEARCHES, limit
 
 
 @dataclass(frozen=True)
 class ModelLimits:
     """When a model, or a board's table, is doubted; and the arm with looser gears beside the estimate."""
 
-    gear_sigmas: float = limit(0.5, "standard deviations", "the second plant's gears are looser by so many")
+    gear_sigmas: float = limit(
+        0.5, "standard deviations", "the second plant's gears are looser by so many", MEASURED_IN_SEARCHES
+    )
     slow_spread: float = limit(
         0.5,
         "of the tracking error",
@@ -21,8 +23,8 @@ class ModelLimits:
         0.25, "of the tracking error", "the same of quick moves, which show inertia and damping"
     )
     same_supply: float = limit(0.02, "of the supply", "so much may the supplies of model and board differ")
-    same_slope: float = limit(0.1, "of the slope", "and their potentiometers' slopes")
-    same_zero_rad: float = limit(0.1, "rad", "and their zero angles")
+    same_slope: float = limit(0.1, "of the slope", "so much may the slopes of their potentiometers differ")
+    same_zero_rad: float = limit(0.1, "rad", "so much may their zero angles differ")
     same_value: float = limit(1e-3, "of the value", "so much may an arm and its own table differ: more was an edit")
     same_gap_rad: float = limit(1e-5, "rad", "the same of gaps, which the search may leave at next to nothing")
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from greywhale.base.limits import BY_DEFINITION, limit
+from greywhale.base.limits import BY_DEFINITION, MEASURED_IN_SEARCHES, limit
 
 
 @dataclass(frozen=True)
@@ -33,7 +33,7 @@ class TrainingLimits:
         0.1, "s", "a moment weighs this much, and the time since the leader last moved: a late error counts more"
     )
     moving_rad: float = limit(0.02, "rad", "the leader moves while it changes by this much: a tremor is far smaller")
-    moving_s: float = limit(0.1, "s", "within this time")
+    moving_s: float = limit(0.1, "s", "the leader moves if it changes so much within this time")
 
 
 @dataclass(frozen=True)
@@ -63,14 +63,18 @@ class CostLimits:
     rms_weight: float = limit(
         6.0, "", "of the root of the mean square, which the paper measures, beside that of the mean size"
     )
-    rattle_weight: float = limit(9.0, "", "of rattling, as an error")
-    louder_weight: float = limit(3.0, "times that", "of what is beyond the rattling from before")
+    rattle_weight: float = limit(
+        9.0, "", "of rattling, as an error: with less, a roll rattled more than before", MEASURED_IN_SEARCHES
+    )
+    louder_weight: float = limit(3.0, "times rattle_weight", "of what is beyond the rattling from before")
     unheard_rad: float = limit(
         1e-3, "rad", "rattling below this is never louder: a board's angle has steps of a quarter of it"
     )
     chatter_weight: float = limit(0.3, "", "of the chatter that a moving gear bears at most")
     shaking_weight: float = limit(1.0, "", "of the rattling at which the margin while moving is lost")
-    bearable_share: float = limit(0.7, "of these two", "they cost from here on")
+    bearable_share: float = limit(
+        0.7, "of the limit", "chatter and shaking cost from this share of their limits on", MEASURED_IN_SEARCHES
+    )
     effort_weight: float = limit(0.02, "", "of the voltage's mean size as a share of the supply")
     worst_plant_share: float = limit(0.5, "", "the worst plant counts so much, the mean of all the rest")
     lost_cost: float = limit(1e3, "", "of a motion that left the range of numbers", BY_DEFINITION)
@@ -79,4 +83,4 @@ class CostLimits:
         "of the floor",
         "the room between the least error and that from before is no less: a division by it would magnify noise",
     )
-    least_room_rad: float = limit(0.004, "rad", "nor less than this")
+    least_room_rad: float = limit(0.004, "rad", "that room is never less than this")

@@ -1,0 +1,242 @@
+"""The limits of an identification: what a log must be, what a search takes for better, and what a model leaves open.
+
+`identify(..., judging=...)` takes others; every log made ready carries them. Numbers of steps and simulations, and how
+finely something is computed, are no limits: they stand where they are used.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from greywhale.base.limits import MEASURED_ON_ARMS, limit
+
+
+@dataclass(frozen=True)
+class DataLimits:
+    """A log made ready: its stretches, velocities and windows."""
+
+    window_s: float = limit(0.5, "s", "a window is so long: simulated from a known start, it shows what the numbers do")
+    smoothing_s: float = limit(0.04, "s", "the angle is smoothed over this to find velocities")
+    compared_s: float = limit(5e-3, "s", "windows are compared so often: readings that are closer differ in noise only")
+    usual_spacings: float = limit(
+        99.0, "%", "the longest step holds in so many of the spacings between rows; the few longer ones may exceed it"
+    )
+    sure_rad_s: float = limit(0.05, "rad/s", "a slower joint may turn back within its potentiometer's play unseen")
+    longest_gap_s: float = limit(
+        0.02, "s", "rows further apart, or than one and a half periods of a slower log, end a stretch"
+    )
+    block_s: float = limit(
+        0.5, "s", "blocks are held out; one is shorter than a motion, so each motion is in both parts"
+    )
+    held_out_every: int = limit(4, "blocks", "the last of so many is held out")
+    lively_rad: float = limit(0.01, "rad", "in a lively window a joint moves by more than this")
+    max_windows: int = limit(120, "windows", "more would take longer, and hardly tell more")
+
+
+@dataclass(frozen=True)
+class CheckLimits:
+    """What makes a log useless."""
+
+    shortest_s: float = limit(4.0, "s", "less of a log shows too little")
+    farthest_s: float = limit(0.1, "s", "rows further apart do not show how an arm moves")
+    clipped_share: float = limit(
+        0.01, "of the log", "a reading that stays exactly at its extreme for this long, far out, is clipped"
+    )
+    clipped_from_rad: float = limit(2.3, "rad", "a reading is clipped only so far out: there a potentiometer ends")
+    against: float = limit(
+        -0.3, "correlation of error and voltage", "a controller pulls towards the leader; below this it pushes away"
+    )
+    saturated_share: float = limit(0.5, "of the log", "longer at full voltage is worth a remark")
+    fitting_share: float = limit(
+        0.7, "of the changes", "at least so much of the voltage changes in whole control periods"
+    )
+    max_shared: float = limit(
+        0.2,
+        "of the shorter log",
+        "logs may share this: recordings on the bench may begin with the same motion and noise",
+    )
+
+
+@dataclass(frozen=True)
+class WindowLimits:
+    """How a model is compared with a window, or with the closed loop."""
+
+    speed_doubt_rad_s: float = limit(
+        0.05, "rad/s", "a start speed may be off by this beyond what noise explains: motion within the smoothing"
+    )
+    worth_a_change: float = limit(
+        0.95, "of the squared difference", "another side of a gap is taken for a start only if it leaves less"
+    )
+    usual_misfit: float = limit(
+        4.0,
+        "times the mean window's",
+        "a window counts as usual up to this; in many a log the median window is one of rest",
+    )
+    loop_doubt_rad: float = limit(
+        1e-2, "rad", "a difference in the closed loop counts as one standard deviation: it lasts for many readings"
+    )
+
+
+@dataclass(frozen=True)
+class SearchLimits:
+    """What a search takes for better."""
+
+    min_improvement: float = limit(
+        0.01, "of 1 + squares over noise", "an order with more quantities must predict the held-out data better by this"
+    )
+    min_closed_improvement: float = limit(
+        0.2, "of the error", "the same for the closed loop, which is rough: chance alone moves its error by a tenth"
+    )
+    rival_margin: float = limit(
+        0.02, "of 1 + squares over noise", "other orders that are worse by no more are kept as rivals"
+    )
+    max_rivals: int = limit(2, "models", "so many rivals are kept")
+    probe_slack: float = limit(
+        0.04, "of the held-out misfit", "an order gets a whole fit only if a short one leaves no more than this on top"
+    )
+    other_optimum: float = limit(
+        0.3, "of a searched number", "numbers that differ by this are another optimum and get a fit of their own"
+    )
+    farthest_log: float = limit(
+        2.5, "as a logarithm", "GWO-WOA searches no farther from the arm file's value, to either side"
+    )
+
+
+@dataclass(frozen=True)
+class JudgeLimits:
+    """When a model is doubted."""
+
+    max_unexplained: float = limit(
+        0.5,
+        "of the tracking error",
+        "a joint is doubted whose model leaves more than this with a changed controller",
+    )
+    worse_times: float = limit(4.0, "times", "and only if that is so many times what it leaves with its own")
+    small_rad: float = limit(5e-3, "rad", "below this error nobody cares which arm is nearer")
+    sure_share: float = limit(
+        0.95,
+        "of the models that a fit allows",
+        "a model that is further from a log than this many of them is not so by chance",
+    )
+
+
+@dataclass(frozen=True)
+class UncertaintyLimits:
+    """What is known, and what fits are off."""
+
+    open_log: float = limit(
+        0.3, "as a logarithm", "a positive quantity is left open if it is known no better than to this factor"
+    )
+    open_steps: tuple[tuple[str, float], ...] = limit(
+        (
+            ("breakaway", 0.5),
+            ("gap", 2e-3),
+            ("play", 2e-3),
+            ("load", 0.2),
+            ("creep", 0.05),
+            ("lag", 1e-3),
+            ("sag", 0.3),
+            ("tip", 0.05),
+            ("offset", 0.05),
+        ),
+        "in its unit",
+        "any other quantity is left open beyond this deviation",
+    )
+    open_factors: tuple[tuple[str, float], ...] = limit(
+        (("drag", 1.0), ("teeth", 1.0)), "as a logarithm", "these matter little: within a factor of e is enough"
+    )
+    wide_difference: float = limit(
+        0.1,
+        "of the arm file's doubt",
+        "derivatives are wide: a joint that hunts makes the residual rough, which is no information",
+    )
+    uncertain: float = limit(0.05, "of the value", "numbers that are less certain may lie on a ridge")
+    sharper: float = limit(
+        3.0, "times as certain", "a combination of two numbers is stated if it is so much surer than either"
+    )
+    start_sigmas: float = limit(2.0, "standard deviations", "a fit of a simulated log starts so far away")
+    shape_logs: float = limit(3.0, "logs", "the formula's shape counts like so many fits of simulated logs")
+    systematic: tuple[tuple[str, float], ...] = limit(
+        (
+            ("inertia", 0.015),
+            ("damping", 0.002),
+            ("coulomb", 0.008),
+            ("breakaway", 0.03),
+            ("stribeck", 0.3),
+            ("gap", 2e-4),
+            ("drag", 2.0),
+            ("teeth", 0.7),
+            ("play", 6e-4),
+        ),
+        "standard deviations of the searched numbers",
+        "fits are off beyond their scatter: those of simulated logs begin near the truth, the real one ends in one of "
+        "several optima",
+        MEASURED_ON_ARMS,
+    )
+    systematic_alpha: tuple[float, ...] = limit(
+        (0.03, 0.001, 0.001, 3.0),
+        "of joints 0 to 3",
+        "the same of alpha: yaw and roll feel no gravity and hardly show it",
+        MEASURED_ON_ARMS,
+    )
+    widened: float = limit(
+        1.3, "times the variance", "what fits are off on known arms on top of that", MEASURED_ON_ARMS
+    )
+
+
+@dataclass(frozen=True)
+class ExcitationLimits:
+    """What a designed motion may do."""
+
+    reach_rad: float = limit(1.0, "rad", "without a range a joint moves no farther to either side of where it is")
+    margin_rad: float = limit(0.1, "rad", "this distance to a limit of the board or a stop of the arm stays free")
+    narrowest_rad: float = limit(0.2, "rad", "a narrower range shows nothing")
+    speed_share: float = limit(0.5, "of the voltage", "speed may take this")
+    acceleration_share: float = limit(0.5, "of the voltage", "acceleration may take this")
+    max_speed_rad_s: float = limit(4.0, "rad/s", "no joint is quicker, nor than two thirds of what a host can lead")
+    lag_share: float = limit(
+        0.4,
+        "of the board's tracking limit",
+        "the follower may lag by this in simulation; from half of that limit on the player slows",
+    )
+    usual_tracking_rad: float = limit(0.9, "rad", "that limit where the board has none, or a wider one")
+    motor_doubt_log: float = limit(
+        0.7, "as a logarithm", "a motor may be wrong by this in an arm file, on the arms on which a motion is tried"
+    )
+    friction_v: tuple[float, float] = limit((0.2, 0.9), "V", "friction of the arms on which a motion is tried")
+    unsafe_price: float = limit(
+        50.0, "", "a lag or an overshoot of twice the limit costs more than any information is worth"
+    )
+    shrink: float = limit(
+        0.9, "times", "a motion that is not safe on some arm is shrunk towards the pose by this, again and again"
+    )
+    still_rad_s: float = limit(
+        0.01, "rad/s", "below this speed friction may have any value within its limits and shows nothing"
+    )
+    frequencies_hz: tuple[float, float] = limit((0.1, 3.0), "Hz", "the lowest and the highest sine")
+    fade_s: float = limit(1.5, "s", "fading in and out takes this long")
+    fade_share: float = limit(0.2, "of the motion", "and at most this much of a short motion")
+    rest_s: float = limit(0.3, "s", "the motion rests before and after")
+    pauses_per_s: float = limit(
+        0.2, "1/s", "now and then all stands still, so that friction at rest, creeping and hunting show"
+    )
+    pause_s: float = limit(1.2, "s", "such a pause, from slowing down to being at speed again")
+    amplitude_spread_log: float = limit(
+        3.0, "as a logarithm", "amplitudes differ by up to this factor, before frequency"
+    )
+
+
+@dataclass(frozen=True)
+class IdentificationLimits:
+    """All limits of an identification, and of the motion that is designed for one."""
+
+    data: DataLimits = DataLimits()
+    checks: CheckLimits = CheckLimits()
+    windows: WindowLimits = WindowLimits()
+    search: SearchLimits = SearchLimits()
+    judge: JudgeLimits = JudgeLimits()
+    uncertainty: UncertaintyLimits = UncertaintyLimits()
+    excitation: ExcitationLimits = ExcitationLimits()
+
+
+IDENTIFICATION_LIMITS = IdentificationLimits()
