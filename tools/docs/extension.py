@@ -31,6 +31,8 @@ SLASH = chr(92)  # a backslash
 PATH = re.compile(r"PosixPath\('([^']*)'\)")
 # numpy's own way of writing an array of any shape.
 ARRAY = re.compile(r"~?numpy\.ndarray\[tuple\[~?(?:typing\.)?Any, \.\.\.\], ~?numpy\.dtype\[~?numpy\.(\w+)\]\]")
+# A default that is limits; docs/limits.md has the values.
+LIMITS = re.compile(r"\b\w+(?:Limits|Bounds)\(")
 # A field of a class with a comment behind it: name, default, comment.
 _TYPE = r"[^=\n\[]*(?:\[.*?\])?[^=\n\[]*?"
 FIELD = re.compile(rf"^    (\w+): {_TYPE}(?: = ([^\n]+?))?  # (?!type:|noqa)([^\n]+)$", re.MULTILINE)
@@ -61,10 +63,27 @@ def add_help(app: Sphinx, docname: str, source: list[str]) -> None:
 def shorten_arrays(
     app: Sphinx, what: str, name: str, subject: object, options: object, signature: str | None, returned: str | None
 ) -> tuple[str | None, str | None]:
-    """NDArray[float64], as the code has it; nothing for what is read from a file, whose fields are listed."""
-    if inspect.isclass(subject) and issubclass(subject, BaseModel):
+    """NDArray[float64], as the code has it, and no limit's value; nothing for limits, and for what is read from a file,
+    whose fields are listed.
+    """
+    if inspect.isclass(subject) and (issubclass(subject, BaseModel) or name.endswith("Limits")):
         return "", None
-    return tuple(None if part is None else ARRAY.sub(r"NDArray[\1]", part) for part in (signature, returned))  # type: ignore[return-value]
+    return _shortened(signature), _shortened(returned)
+
+
+def _shortened(part: str | None) -> str | None:
+    return None if part is None else without_values(ARRAY.sub(r"NDArray[\1]", part))
+
+
+def without_values(signature: str) -> str:
+    """The same without what stands in the parentheses of a default that is limits."""
+    while (found := LIMITS.search(signature)) is not None:
+        end, depth = found.end(), 1
+        while depth:
+            depth += {"(": 1, ")": -1}.get(signature[end], 0)
+            end += 1
+        signature = f"{signature[: found.end() - 1]}{signature[end:]}"
+    return signature
 
 
 def add_to_docstring(app: Sphinx, what: str, name: str, subject: object, options: object, lines: list[str]) -> None:
