@@ -6,5 +6,5 @@ from tools.generate.limits import main
 
 
 def test_the_page_of_limits_is_current() -> None:
-    """If not: `python -m tools.generate.limits`."""
+    """If not: `python -m tools.generate`."""
     assert main(["--check"]) == 0
