@@ -25,7 +25,7 @@ ROOMS = {
     "tune": TUNING_LIMITS,
 }
 # What reads them beside the room that keeps them.
-READERS = {"measure": ("measure", "commission", "adapt")}
+READERS = {"measure": ("measure", "commission", "adapt", "tune")}
 PACKAGE = Path(greywhale.__file__).parent
 
 

@@ -72,7 +72,8 @@ ROOMS = (
     ),
     Room(
         "Swings",
-        "How much more a joint may swing than before, in a commissioning and in an adaptation.",
+        "From where on a swing counts, and how much more than before a joint may swing in a commissioning and in an "
+        "adaptation. The bounds are in `judging.swings` of a tuning too.",
         SWING_LIMITS,
     ),
 )

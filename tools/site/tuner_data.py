@@ -77,9 +77,13 @@ def tuner_data() -> dict[str, Any]:
         "drills": _drills(model),
         "shown": SHOWN,
         "rests": {
-            "searching": _rests(model, LIMITS.margins.rest_s, 0, LIMITS.margins.search_beyond, swings.SEARCH_CYCLE),
-            "refining": _rests(model, LIMITS.margins.long_rest_s, 0, LIMITS.margins.search_beyond, swings.SEARCH_CYCLE),
-            "judging": _rests(model, LIMITS.margins.long_rest_s, 1, 1.0, swings.LIMIT_CYCLE),
+            "searching": _rests(
+                model, LIMITS.margins.rest_s, 0, LIMITS.margins.search_beyond, LIMITS.swings.search_cycle
+            ),
+            "refining": _rests(
+                model, LIMITS.margins.long_rest_s, 0, LIMITS.margins.search_beyond, LIMITS.swings.search_cycle
+            ),
+            "judging": _rests(model, LIMITS.margins.long_rest_s, 1, 1.0, LIMITS.swings.limit_cycle),
         },
         "rattle": _rattle(),
         "prices": _prices(),
@@ -161,12 +165,12 @@ def _prices() -> dict[str, float]:
         "chatter_moving": LIMITS.cost.chatter_weight,
         "shaking": LIMITS.cost.shaking_weight,
         "bearable": LIMITS.cost.bearable_share,
-        "chatter_moving_hz": swings.CHATTER_MOVING_HZ,
-        "rattle_moving_rad": swings.RATTLE_MOVING_RAD,
+        "chatter_moving_hz": LIMITS.swings.chatter_moving_hz,
+        "rattle_moving_rad": LIMITS.swings.rattle_moving_rad,
         "effort": LIMITS.cost.effort_weight,
         "lost": LIMITS.cost.lost_cost,
-        "chatter_at_rest_hz": swings.CHATTER_AT_REST_HZ,
-        "quiet_share": swings.QUIET_SHARE,
+        "chatter_at_rest_hz": LIMITS.swings.chatter_at_rest_hz,
+        "quiet_share": LIMITS.swings.quiet_share,
         "search_ripple": LIMITS.margins.search_ripple_share,
         "search_chatter": LIMITS.margins.search_chatter_share,
         "travel": LIMITS.margins.travel_price,

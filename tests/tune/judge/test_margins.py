@@ -10,7 +10,7 @@ from greywhale.arm.plants import columns
 from greywhale.files import controller
 from greywhale.files.arm import default_arm
 from greywhale.loop import controller_row, default_controller, plant_row
-from greywhale.measure.swings import RATTLE_MOVING_RAD
+from greywhale.measure.limits import SWING_BOUNDS
 from greywhale.protocol.table import ParameterTable
 from greywhale.tune.judge.margins import (
     DELAY,
@@ -90,9 +90,9 @@ def test_a_roll_joint_with_four_times_the_gain_rattles_while_it_moves(margins: M
     bold[3, 8] *= 4
     moving = [one for one in margins.check(bold) if one.scenario == MOVING]
     assert [one.holds for one in moving] == [True, True, True, False]
-    assert moving[3].rattle_rad > RATTLE_MOVING_RAD
+    assert moving[3].rattle_rad > SWING_BOUNDS.rattle_moving_rad
     assert moving[3].chatter_hz < 10.0
-    assert all(one.rattle_rad < 0.5 * RATTLE_MOVING_RAD for one in moving[:3])
+    assert all(one.rattle_rad < 0.5 * SWING_BOUNDS.rattle_moving_rad for one in moving[:3])
 
 
 def test_more_gain_and_more_delay_bring_instability_nearer(margins: Margins) -> None:

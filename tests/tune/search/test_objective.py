@@ -12,7 +12,7 @@ from greywhale.base.errors import UserError
 from greywhale.files.arm import default_arm
 from greywhale.files.trajectory import Trajectory
 from greywhale.loop import default_controller, human_reaches, plant_row
-from greywhale.measure.swings import RATTLE_MOVING_RAD
+from greywhale.measure.limits import SWING_BOUNDS
 from greywhale.protocol.table import ParameterTable
 from greywhale.tune.limits import TUNING_LIMITS
 from greywhale.tune.possible import scale_of
@@ -94,11 +94,14 @@ def test_rattling_and_chatter_cost_most_beyond_what_was_before_and_near_the_marg
     silent = replace(scale, rattle=np.zeros((1, 2, 4)))
     free = relative_costs(FollowingErrors(none, none, np.full_like(none, COST.unheard_rad), none), silent, 15.0)
     np.testing.assert_allclose(free, np.sqrt(COST.rattle_weight * COST.unheard_rad / 0.05))
-    always = replace(scale, rattle=np.full((1, 2, 4), RATTLE_MOVING_RAD))
+    always = replace(scale, rattle=np.full((1, 2, 4), SWING_BOUNDS.rattle_moving_rad))
     shaken = relative_costs(FollowingErrors(none, none, always.rattle[:, None], none), always, 15.0)
     np.testing.assert_allclose(
         shaken,
-        np.sqrt(COST.rattle_weight * RATTLE_MOVING_RAD / 0.05 + COST.shaking_weight * (1.0 - COST.bearable_share)),
+        np.sqrt(
+            COST.rattle_weight * SWING_BOUNDS.rattle_moving_rad / 0.05
+            + COST.shaking_weight * (1.0 - COST.bearable_share)
+        ),
     )
 
 

@@ -18,7 +18,7 @@ from greywhale.adapt.limits import ADAPTATION_LIMITS, SampleLimits
 from greywhale.adapt.stretch import Stretch, chains_of, traces_of
 from greywhale.base.types import Floats
 from greywhale.measure.limits import SWING_LIMITS, AllowedSwings, SwingLimits
-from greywhale.measure.swings import QUIET_SHARE, chatter_of_record, rattle_of_record, ripple_of_record, unrest
+from greywhale.measure.swings import chatter_of_record, rattle_of_record, ripple_of_record, unrest
 
 
 @dataclass(frozen=True)
@@ -54,7 +54,7 @@ def find_excess(now: Swings, before: Swings, supply_v: float, limits: SwingLimit
         before.rattle[None],
         before.chatter[None],
         before.ripple[None],
-        QUIET_SHARE * supply_v,
+        limits.bounds.quiet_share * supply_v,
         limits,
     )
     allowed = {

@@ -9,12 +9,12 @@ import numpy as np
 from greywhale.arm import ArmParameters
 from greywhale.arm.plants import column, plant_row
 from greywhale.base.types import Floats
-from greywhale.commission.limits import EvidenceLimits
+from greywhale.commission.limits import CommissioningLimits, EvidenceLimits
 from greywhale.commission.trials import Trial, Trials
 from greywhale.files.log import Log, read_evidence
 from greywhale.loop.led_model import predict
 from greywhale.loop.traces import Traces
-from greywhale.measure.swings import LIMIT_CYCLE, turns_of, unrest
+from greywhale.measure.swings import turns_of, unrest
 from greywhale.protocol.firmware import JOINTS, TICK_S
 from greywhale.protocol.table import CONTROLLER_COLUMNS, ParameterTable
 
@@ -55,18 +55,18 @@ def failing_plants(arm: ArmParameters, trials: Trials) -> Floats:
         if restless:
             # The one nearest to rest shows best where the margin is.
             calmest = min(restless, key=lambda one: int(one.rows[joint, KP]))
-            plant = _plant_that_hunts(arm, calmest, joint, trials.judging.evidence)
+            plant = _plant_that_hunts(arm, calmest, joint, trials.judging)
             if plant is not None:
                 found.append(plant)
     return np.array(found) if found else np.zeros((0, len(plant_row(arm))))
 
 
-def _plant_that_hunts(arm: ArmParameters, trial: Trial, joint: int, limits: EvidenceLimits) -> Floats | None:
+def _plant_that_hunts(arm: ArmParameters, trial: Trial, joint: int, judging: CommissioningLimits) -> Floats | None:
     """The model itself where it hunts; None where no plant in reach does."""
-    plants = _variants(plant_row(arm), joint, limits)
+    plants = _variants(plant_row(arm), joint, judging.evidence)
     measured = _unrest(trial.traces, joint)
     for plant, shown in zip(plants, predict(arm, trial.table, trial.traces, plants), strict=True):
-        if _shows(shown, trial, joint, measured, limits):
+        if _shows(shown, trial, joint, measured, judging):
             found: Floats = plant
             return found
     return None
@@ -92,8 +92,9 @@ def _unrest(traces: Traces, joint: int) -> float:
     return float(np.nan_to_num(unrest(traces.leader, traces.follower)[joint]))
 
 
-def _shows(shown: Traces, trial: Trial, joint: int, measured: float, limits: EvidenceLimits) -> bool:
+def _shows(shown: Traces, trial: Trial, joint: int, measured: float, judging: CommissioningLimits) -> bool:
     if not trial.stopped:
-        return _unrest(shown, joint) >= limits.shown_share * measured
-    first = max(0, len(shown.follower) - round(limits.hunting_end_s / TICK_S))
-    return bool(turns_of(shown.follower, LIMIT_CYCLE.band_rad, first)[joint] >= LIMIT_CYCLE.turns)
+        return _unrest(shown, joint) >= judging.evidence.shown_share * measured
+    first = max(0, len(shown.follower) - round(judging.evidence.hunting_end_s / TICK_S))
+    cycle = judging.swings.bounds.limit_cycle
+    return bool(turns_of(shown.follower, cycle.band_rad, first)[joint] >= cycle.turns)

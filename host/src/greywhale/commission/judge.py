@@ -12,7 +12,6 @@ from greywhale.commission.limits import COMMISSIONING_LIMITS, CommissioningLimit
 from greywhale.commission.measures import HAND_LED, HOLDING, Measures
 from greywhale.commission.motions import PARTS
 from greywhale.measure.limits import AllowedSwings
-from greywhale.measure.swings import RATTLE_MOVING_RAD
 from greywhale.protocol.firmware import JOINTS
 
 # Where a joint hardly moves, friction and play make its error.
@@ -64,7 +63,7 @@ class Limits:
         least = np.full((len(PARTS), 1), swings.unseen_unrest_rad)
         growth[PUSHED], least[PUSHED] = own.kept_growth, own.pushed_rad
         least_rattle = np.full((len(PARTS), 1), swings.unseen_rattle_rad)
-        least_rattle[SLOW] = RATTLE_MOVING_RAD
+        least_rattle[SLOW] = swings.bounds.rattle_moving_rad
         most = AllowedSwings.beside(
             before.unrest, before.rattle, before.chatter, before.ripple, quiet_v, swings,
             growth=growth, unseen_unrest=least, unseen_rattle=least_rattle,

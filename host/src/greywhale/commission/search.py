@@ -30,7 +30,6 @@ from greywhale.fuzzy.settings import GAIN_UNIT
 from greywhale.identify import loosen_gears
 from greywhale.loop.controllers import controllers_of
 from greywhale.loop.led_model import LedModel
-from greywhale.measure.swings import QUIET_SHARE
 from greywhale.protocol.firmware import JOINTS
 from greywhale.protocol.joints import unused
 from greywhale.protocol.table import CONTROLLER_COLUMNS
@@ -73,7 +72,7 @@ class CheckOnModel:
         led = LedModel(arm, table, before.traces)
         (traces,) = led.run(running, plants[:1])
         known = measure(traces, trials.check, table.supply_v)
-        quiet_v = QUIET_SHARE * table.supply_v
+        quiet_v = trials.judging.swings.bounds.quiet_share * table.supply_v
         limits, own = (Limits.of(one, NONE, quiet_v, trials.judging) for one in (before.measured, known))
         return cls(
             arm=led,
@@ -119,7 +118,7 @@ class CheckOnModel:
         """The error in what a hand leads, rms as a share of that before, and what the rest costs, (n, 4) each."""
         unrest = self.margins.unrest(controllers)
         near = {name: found for name, found in unrest.items() if name not in (TWICE, TEETH)}
-        prices, wanted = penalty(near, NO_LIMIT_V, self.trials.judging.tuning.margins), self.wanted
+        prices, wanted = penalty(near, NO_LIMIT_V, self.trials.judging.tuning), self.wanted
         ratios, restless = self.foresight.estimate(controllers, self.plants[1:])
         prices += wanted.price * np.maximum(restless / self.swings[:, None] - 1.0, 0.0).max(axis=0)
         worse = np.maximum(ratios / wanted.before_aim - 1.0, 0.0)

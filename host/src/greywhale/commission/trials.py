@@ -19,7 +19,6 @@ from greywhale.commission.motions import Check
 from greywhale.files.log import read_evidence
 from greywhale.loop.controllers import controllers_of
 from greywhale.loop.traces import Traces
-from greywhale.measure.swings import QUIET_SHARE
 from greywhale.protocol.firmware import JOINTS
 from greywhale.protocol.table import CONTROLLER_COLUMNS, ParameterTable
 
@@ -168,6 +167,7 @@ class Trials:
         guilty = [played.stopped if joint == played.joint else "" for joint in range(JOINTS)]
         kept = (rows == controllers_of(self.table)).all(axis=1)
         foreseen = ("",) * JOINTS if self.foresight is None else self.foresight.clauses(rows)
-        limits = Limits.of(before, kept, QUIET_SHARE * self.table.supply_v, self.judging)
+        quiet_v = self.judging.swings.bounds.quiet_share * self.table.supply_v
+        limits = Limits.of(before, kept, quiet_v, self.judging)
         verdicts = judge(measured, before, limits, guilty, foreseen, self.judging)
         return Trial(name, rows.copy(), self.table_of(rows), path, played.stopped, measured, verdicts, traces)

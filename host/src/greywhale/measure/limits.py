@@ -9,7 +9,35 @@ import numpy as np
 
 from greywhale.base.limits import MEASURED_IN_TRIALS, limit
 from greywhale.base.types import Floats
-from greywhale.measure.swings import CHATTER_AT_REST_HZ, RATTLE_MOVING_RAD
+from greywhale.measure.swings import Hunting
+
+
+@dataclass(frozen=True)
+class SwingBounds:
+    """From where on a swing counts, whatever was there before."""
+
+    limit_cycle_rad: float = limit(
+        0.01, "rad", "turns that are farther apart are a limit cycle in the rest after a move"
+    )
+    limit_cycle_turns: int = limit(3, "turns", "so many turns in one rest are a limit cycle")
+    search_cycle_rad: float = limit(
+        0.005, "rad", "a search keeps clear of the border: turns that are nearer already cost it something"
+    )
+    search_cycle_turns: int = limit(2, "turns", "fewer turns too")
+    chatter_at_rest_hz: float = limit(50.0, "1/s", "more large swings of the voltage at rest are chatter")
+    chatter_moving_hz: float = limit(100.0, "1/s", "a gear that moves bears more of them")
+    rattle_moving_rad: float = limit(0.005, "rad rms", "a joint that rattles more while it moves fails")
+    quiet_share: float = limit(0.03, "of the supply", "so much ripple is allowed at rest in any case")
+
+    @property
+    def limit_cycle(self) -> Hunting:
+        """In simulations, and in a log that ended in hunting."""
+        return Hunting(self.limit_cycle_rad, self.limit_cycle_turns)
+
+    @property
+    def search_cycle(self) -> Hunting:
+        """What a search already pays for."""
+        return Hunting(self.search_cycle_rad, self.search_cycle_turns)
 
 
 @dataclass(frozen=True)
@@ -46,8 +74,11 @@ class SwingLimits:
         MEASURED_IN_TRIALS,
     )
 
+    bounds: SwingBounds = SwingBounds()
+
 
 SWING_LIMITS = SwingLimits()
+SWING_BOUNDS = SWING_LIMITS.bounds
 
 
 @dataclass(frozen=True)
@@ -80,6 +111,7 @@ class AllowedSwings:
             growth = np.full(unrest.shape, limits.unrest_growth)
         least_unrest = limits.unseen_unrest_rad if unseen_unrest is None else unseen_unrest
         least_rattle = limits.unseen_rattle_rad if unseen_rattle is None else unseen_rattle
+        most_rattle = limits.bounds.rattle_moving_rad
 
         def allowed(before: Floats, grow: Callable[[Floats], Floats], least: Floats | float, most: float) -> Floats:
             known = np.nan_to_num(before)
@@ -89,8 +121,8 @@ class AllowedSwings:
             unrest=allowed(
                 unrest, lambda known: _grow_beyond_noise(known, growth), least_unrest, limits.max_unrest_rad
             ),
-            rattle=allowed(rattle, lambda known: limits.rattle_growth * known, least_rattle, RATTLE_MOVING_RAD),
-            chatter=np.maximum(CHATTER_AT_REST_HZ, limits.voltage_growth * np.nan_to_num(chatter)),
+            rattle=allowed(rattle, lambda known: limits.rattle_growth * known, least_rattle, most_rattle),
+            chatter=np.maximum(limits.bounds.chatter_at_rest_hz, limits.voltage_growth * np.nan_to_num(chatter)),
             ripple=np.maximum(quiet_v, limits.voltage_growth * np.nan_to_num(ripple)),
         )
 

@@ -1,5 +1,5 @@
-"""Swings that nobody asked for: five words, how each is measured, and from where on each counts. All of greywhale
-takes them from here.
+"""Swings that nobody asked for: five words, and how each is measured. All of greywhale takes them from here. From where
+on each counts is in `limits.py`.
 
 - Hunting: while its leader rests, a joint turns back again and again, each time by more than a band (a gear that hunts
   in its backlash, an integrator that breaks loose, a loop without phase margin). `count_swings` counts the turns.
@@ -44,14 +44,8 @@ class Hunting:
     turns: int
 
 
-# A limit cycle in the rest after a move, in simulations and in a log that ended in hunting.
-LIMIT_CYCLE = Hunting(0.01, 3)
-SEARCH_CYCLE = Hunting(0.005, 2)  # a search keeps clear of the border: fewer and smaller swings already cost
 # What nobody can overlook: while an arm is led, the motors go off.
 VIOLENT = Hunting(0.03, 4)
-CHATTER_AT_REST_HZ = 50.0
-CHATTER_MOVING_HZ = 100.0  # a gear that moves bears more
-RATTLE_MOVING_RAD = 0.005  # rms
 
 
 def count_swings(traces: Singles | Duties, first: int, last: int, band: float) -> tuple[Integers, Floats]:
@@ -201,9 +195,6 @@ def chatter_of_record(voltage: Floats, supply_v: float) -> Floats:
 
 
 # --- ripple -----------------------------------------------------------------------------------------------------------
-
-# So much ripple is allowed at rest in any case, as a share of the supply.
-QUIET_SHARE = 0.03
 
 
 def ripple(duties: Duties, rows: tuple[int, int], board: Board) -> Floats:

@@ -28,7 +28,7 @@ import numpy as np
 from greywhale.arm.parameters import with_usual_noise
 from greywhale.base.errors import counted
 from greywhale.base.types import Controllers, Flags, Floats
-from greywhale.measure.swings import CHATTER_AT_REST_HZ, CHATTER_MOVING_HZ, LIMIT_CYCLE, RATTLE_MOVING_RAD
+from greywhale.measure.limits import SwingBounds
 from greywhale.optimise.optimiser import PACK
 from greywhale.optimise.shift_invariant import ShiftInvariantWolfWhale
 from greywhale.protocol.joints import unused
@@ -92,16 +92,17 @@ class DefaultMethod:
         motions = self._motions(task.seed)
         scale = scale_of(motions, model.plants, task.before, task.threads, self.limits)
         some = model.plants[:SEARCH_PLANTS]
-        self.objective = Objective(motions, some, scale.first(len(some)), task.threads, self.limits.cost)
+        costs: dict[str, Any] = {"limits": self.limits.cost, "swings": self.limits.swings}
+        self.objective = Objective(motions, some, scale.first(len(some)), task.threads, **costs)
         other_noise = self._motions(task.seed + JUDGING_SEED)
-        self.judging = Objective(other_noise, model.plants, scale, task.threads, self.limits.cost)
+        self.judging = Objective(other_noise, model.plants, scale, task.threads, **costs)
         # Longer and with other noise, since a search learns its own noise by heart.
         self.judging_margins = self._margins(rest_s=self.limits.margins.long_rest_s, noise=1)
         # With bounds, what is uploaded keeps within them, whatever ran before.
         self.start = self.space.controllers(self.space.points(task.before[None]))[0] if task.bounds else task.before
         self.margins = self._margins(searching=True)
         self.margins_before = self.judging_margins.check(self.start)
-        self.standard = Standard.of(self.margins_before, self.table.supply_v, self.limits.quiet, self.limits.choice)
+        self.standard = Standard.of(self.margins_before, self.table.supply_v, self.limits.quiet, self.limits)
         self.found = SearchState.nothing(self.start)
 
     def _motions(self, seed: int) -> tuple[TrainingMotion, ...]:
@@ -166,14 +167,14 @@ class DefaultMethod:
 
     def costs(self, controllers: Controllers) -> Floats:
         """The search's costs: (n, 4)."""
-        restless = penalty(self.margins.unrest(controllers), self.standard.quiet_v, self.limits.margins)
+        restless = penalty(self.margins.unrest(controllers), self.standard.quiet_v, self.limits)
         return self.objective.costs(controllers) + restless
 
     def judge_costs(self, controllers: Controllers, exact: bool = False) -> Floats:
         """The same cost on all plants, with other noise; `exact`: in the bench's own arithmetic."""
         costs: Floats = self.judging.costs(controllers, exact=exact)
         unrest = self.judging_margins.unrest(controllers, exact=exact)
-        restless, limits = penalty(unrest, self.standard.quiet_v, self.limits.margins), self.limits.choice
+        restless, limits = penalty(unrest, self.standard.quiet_v, self.limits), self.limits.choice
         if self.limits.by_the_arm:
             return costs + limits.unrest_weight_on_arm * restless
         short = self.standard.falls_short(unrest, (controllers == self.start).all(axis=2))
@@ -236,7 +237,7 @@ class DefaultMethod:
 
         def costs(controllers: Controllers) -> Floats:
             unrest = self.margins.unrest(controllers)
-            restless = penalty(unrest, self.standard.quiet_v, self.limits.margins, strict=True)
+            restless = penalty(unrest, self.standard.quiet_v, self.limits, strict=True)
             return self.objective.costs(controllers) + restless
 
         search = LockstepSearch(costs, SearchState.nothing(rows))
@@ -271,25 +272,25 @@ class DefaultMethod:
             after=after,
             cost_before=tuple(map(float, cost_before)),
             cost_after=tuple(map(float, cost_after)),
-            notes=_notes(margins),
+            notes=_notes(margins, self.limits.swings),
             margins_before=margins_before,
             margins=margins,
             held_out=held_out,
         )
 
 
-def _notes(margins: tuple[Margin, ...]) -> tuple[str, ...]:
+def _notes(margins: tuple[Margin, ...], swings: SwingBounds) -> tuple[str, ...]:
     """One sentence for every scenario in which a joint does not come to rest, or does not move smoothly."""
-    return tuple(_note(margin) for margin in margins if not margin.holds)
+    return tuple(_note(margin, swings) for margin in margins if not margin.holds)
 
 
-def _note(margin: Margin) -> str:
+def _note(margin: Margin, swings: SwingBounds) -> str:
     found = []
-    if margin.rattle_rad >= RATTLE_MOVING_RAD:
+    if margin.rattle_rad >= swings.rattle_moving_rad:
         found.append(f"rattles by {1e3 * margin.rattle_rad:.1f} mrad")
-    if margin.reversals >= LIMIT_CYCLE.turns:
+    if margin.reversals >= swings.limit_cycle_turns:
         found.append(f"turns round {counted(margin.reversals, 'time')} in a rest")
-    if margin.chatter_hz > (CHATTER_MOVING_HZ if margin.scenario == MOVING else CHATTER_AT_REST_HZ):
+    if margin.chatter_hz > (swings.chatter_moving_hz if margin.scenario == MOVING else swings.chatter_at_rest_hz):
         found.append(f"has a voltage that swings {margin.chatter_hz:.0f} times a second")
     arms = f"{margin.plants_failing} of {counted(margin.plants, 'simulated arm')}"
     return f"joint {margin.joint}, {margin.scenario}: on {arms} it {' and '.join(found) or 'is lost'}"

@@ -23,16 +23,7 @@ from greywhale.base.types import Controllers, Flags, Floats, Integers
 from greywhale.files.trajectory import Trajectory
 from greywhale.loop import Experiment, Result, Timing
 from greywhale.loop.leader_motions import minimum_jerk
-from greywhale.measure.swings import (
-    CHATTER_AT_REST_HZ,
-    CHATTER_MOVING_HZ,
-    LIMIT_CYCLE,
-    RATTLE_MOVING_RAD,
-    SEARCH_CYCLE,
-    count_swings,
-    duty_swings,
-    ripple,
-)
+from greywhale.measure.swings import count_swings, duty_swings, ripple
 from greywhale.protocol.firmware import JOINTS, TICK_S
 from greywhale.protocol.table import ParameterTable
 from greywhale.tune.limits import TUNING_LIMITS, MarginLimits, TuningLimits
@@ -103,12 +94,13 @@ class Unrest:
     hunts: Flags  # turns so often
     travel: Floats  # rad/s, in swings of a limit cycle
     chatter: Floats  # 1/s, duty swings
+    chatters: Flags  # so much
     ripple: Floats  # V rms
     lost: Flags  # left the range of numbers
 
     @property
     def fails(self) -> Flags:
-        return self.hunts | (self.chatter > CHATTER_AT_REST_HZ) | self.lost
+        return self.hunts | self.chatters | self.lost
 
 
 def _part(found: Unrest, plants: slice) -> Unrest:
@@ -144,7 +136,7 @@ class Margins:
         self.plants = plants
         self._arm, self._table, self._seed = arm, table, 100 * seed + _MOVING_SEED + noise
         self._threads = threads
-        self._cycle = SEARCH_CYCLE if searching else LIMIT_CYCLE
+        self._cycle = judging.swings.search_cycle if searching else judging.swings.limit_cycle
         self._beyond = limits.search_beyond if searching else 1.0
         self._rests = rest_ticks(rest_s, judging)
         common: dict[str, Any] = {
@@ -199,7 +191,8 @@ class Margins:
             travel = np.maximum(travel, np.where(turned >= self._cycle.turns, moved / seconds, 0.0))
             chatter, loud = np.maximum(chatter, beats / seconds), np.maximum(loud, hiss)
         lost = np.repeat(result.diverged.reshape(shape)[:, :, None], JOINTS, axis=2)
-        return Unrest(reversals, reversals >= self._cycle.turns, travel, chatter, loud, lost)
+        hunts, chatters = reversals >= self._cycle.turns, chatter > self._judging.swings.chatter_at_rest_hz
+        return Unrest(reversals, hunts, travel, chatter, chatters, loud, lost)
 
     def check(self, controllers: Controllers) -> tuple[Margin, ...]:
         """Check one controller (4, 13) in the bench's own arithmetic: a verdict for each scenario and joint."""
@@ -226,7 +219,7 @@ class Margins:
         found = follow(motions, self.plants, controllers[None], exact=True, threads=self._threads, limits=judging.cost)
         # The worst class counts.
         rattle, chatter = found.rattle[0].max(axis=1), found.chatter[0].max(axis=1)
-        failing = (rattle >= RATTLE_MOVING_RAD) | (chatter > CHATTER_MOVING_HZ)
+        failing = (rattle >= judging.swings.rattle_moving_rad) | (chatter > judging.swings.chatter_moving_hz)
         return [
             Margin(
                 scenario=MOVING,
@@ -242,18 +235,19 @@ class Margins:
 
 
 def penalty(
-    found: dict[str, Unrest], quiet_v: Floats, limits: MarginLimits = TUNING_LIMITS.margins, *, strict: bool = False
+    found: dict[str, Unrest], quiet_v: Floats, judging: TuningLimits = TUNING_LIMITS, *, strict: bool = False
 ) -> Floats:
     """What candidates pay (n, 4), mostly for scenarios that fail; `quiet_v` (4,) is the ripple that is allowed. With
     `strict` a failure costs more.
     """
+    limits = judging.margins
     fail_price = limits.strict_fail_price if strict else limits.fail_price
     share = found[AT_REST].ripple.mean(axis=1) / quiet_v
     beyond = np.maximum(share - limits.search_ripple_share, 0.0)
     total = limits.ripple_price * share + limits.loud_price * beyond
     for scenario, one in found.items():
         fails = (limits.teeth_price if scenario == TEETH else fail_price) * one.fails
-        excess = np.maximum(one.chatter / CHATTER_AT_REST_HZ - limits.search_chatter_share, 0.0)
+        excess = np.maximum(one.chatter / judging.swings.chatter_at_rest_hz - limits.search_chatter_share, 0.0)
         price = limits.travel_price * one.travel + limits.chatter_price * excess + fails + limits.lost_price * one.lost
         total = total + price.mean(axis=1)
     return np.asarray(total, dtype=np.float64)

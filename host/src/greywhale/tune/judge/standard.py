@@ -14,10 +14,9 @@ import numpy as np
 import numpy.typing as npt
 
 from greywhale.base.types import Flags, Floats
-from greywhale.measure.swings import QUIET_SHARE
 from greywhale.protocol.firmware import JOINTS
 from greywhale.tune.judge.margins import AT_REST, TEETH, Margin, Unrest
-from greywhale.tune.limits import TUNING_LIMITS, ChoiceLimits
+from greywhale.tune.limits import TUNING_LIMITS, ChoiceLimits, TuningLimits
 
 
 @dataclass(frozen=True)
@@ -34,16 +33,16 @@ class Standard:
         before: tuple[Margin, ...],
         supply_v: float,
         level: float = 1.0,
-        limits: ChoiceLimits = TUNING_LIMITS.choice,
+        judging: TuningLimits = TUNING_LIMITS,
     ) -> Self:
-        """The ripple may be that from before or QUIET_SHARE of the supply, whichever is larger, divided by `level`."""
+        """The ripple may be that from before or `quiet_share` of the supply, the larger one, divided by `level`."""
         failing: dict[str, npt.NDArray[np.int64]] = {}
         ripple = np.zeros(JOINTS)
         for margin in before:
             failing.setdefault(margin.scenario, np.zeros(JOINTS, np.int64))[margin.joint] = margin.plants_failing
             if margin.scenario == AT_REST:
                 ripple[margin.joint] = margin.ripple_v
-        return cls(failing, np.maximum(ripple, QUIET_SHARE * supply_v) / level, limits)
+        return cls(failing, np.maximum(ripple, judging.swings.quiet_share * supply_v) / level, judging.choice)
 
     def falls_short(self, unrest: Mapping[str, Unrest], kept: Flags) -> Flags:
         """Which joints of which candidates do: (n, 4); so do `kept`, those with the controller from before."""

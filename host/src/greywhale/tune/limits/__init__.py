@@ -10,6 +10,7 @@ from dataclasses import dataclass, field, replace
 
 from greywhale.base.limits import limit
 from greywhale.identify.limits import IDENTIFICATION_LIMITS, IdentificationLimits
+from greywhale.measure.limits import SWING_BOUNDS, SwingBounds
 from greywhale.tune.limits.judge import ChoiceLimits, FloorLimits, MarginLimits
 from greywhale.tune.limits.model import ModelLimits, TravelLimits
 from greywhale.tune.limits.search import CostLimits, SpaceLimits, TrainingLimits
@@ -45,6 +46,7 @@ class TuningLimits:
     floor: FloorLimits = field(default=FloorLimits())
     margins: MarginLimits = field(default=MarginLimits())
     choice: ChoiceLimits = field(default=ChoiceLimits())
+    swings: SwingBounds = SWING_BOUNDS
     identification: IdentificationLimits = IDENTIFICATION_LIMITS  # of the models that it is for
 
 

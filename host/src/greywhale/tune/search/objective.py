@@ -12,8 +12,8 @@ cannot be helped. To this come, in every class,
 
 - `rattle_weight` times the rattling (`rattle`, rad), on the same scale, and `louder_weight` times that for what is
   beyond the rattling from before;
-- `chatter_weight` for every CHATTER_MOVING_HZ of duty swings beyond those that a moving gear bears, `shaking_weight`
-  for every RATTLE_MOVING_RAD of rattling: at these the margin while moving is lost;
+- `chatter_weight` for every `chatter_moving_hz` of duty swings beyond those that a moving gear bears, `shaking_weight`
+  for every `rattle_moving_rad` of rattling: at these the margin while moving is lost;
 - `effort_weight` times the mean of |u| as a share of the supply, weighted like |e|.
 
 The cost of the class is the root of this sum, because the last tenth of the way matters more than the first. Large
@@ -31,7 +31,8 @@ import numpy as np
 
 from greywhale.base.types import Controllers, Floats
 from greywhale.loop import Result
-from greywhale.measure.swings import CHATTER_MOVING_HZ, RATTLE_MOVING_RAD, chatter, rattle
+from greywhale.measure.limits import SWING_BOUNDS, SwingBounds
+from greywhale.measure.swings import chatter, rattle
 from greywhale.protocol.firmware import JOINTS
 from greywhale.tune.limits import TUNING_LIMITS, CostLimits
 from greywhale.tune.search.training import WAIT_S, TrainingMotion
@@ -90,26 +91,31 @@ class Objective:
     scale: ErrorScale
     threads: int = 0
     limits: CostLimits = TUNING_LIMITS.cost
+    swings: SwingBounds = SWING_BOUNDS
 
     def costs(self, controllers: Controllers, exact: bool = False) -> Floats:
         """(n, 4), over all plants; without the price of unrest. `exact`: in the bench's own arithmetic."""
         found = follow(self.drills, self.plants, controllers, exact=exact, threads=self.threads, limits=self.limits)
         supply = self.drills[0].experiment.table.supply_v
         weights = np.array([drill.importance for drill in self.drills])
-        weighted = weights[:, None] * relative_costs(found, self.scale, supply, self.limits)
+        weighted = weights[:, None] * relative_costs(found, self.scale, supply, self.limits, self.swings)
         return combine_plants(weighted.sum(axis=2) / weights.sum(), self.limits.worst_plant_share)
 
 
 def relative_costs(
-    found: FollowingErrors, scale: ErrorScale, supply_v: float, limits: CostLimits = TUNING_LIMITS.cost
+    found: FollowingErrors,
+    scale: ErrorScale,
+    supply_v: float,
+    limits: CostLimits = TUNING_LIMITS.cost,
+    swings: SwingBounds = SWING_BOUNDS,
 ) -> Floats:
     """The cost of every class: (n, plants, classes, 4)."""
     louder = np.maximum(found.rattle - np.maximum(scale.rattle, limits.unheard_rad), 0.0)
     # One joint may come out a little below its floor, where a neighbour carries it.
     avoidable = np.maximum(found.error - scale.floor, 0.0)
     length = avoidable + limits.rattle_weight * (found.rattle + limits.louder_weight * louder)
-    unbearable = np.maximum(found.chatter / CHATTER_MOVING_HZ - limits.bearable_share, 0.0)
-    shaking = np.maximum(found.rattle / RATTLE_MOVING_RAD - limits.bearable_share, 0.0)
+    unbearable = np.maximum(found.chatter / swings.chatter_moving_hz - limits.bearable_share, 0.0)
+    shaking = np.maximum(found.rattle / swings.rattle_moving_rad - limits.bearable_share, 0.0)
     share = length / scale.room + limits.chatter_weight * unbearable + limits.shaking_weight * shaking
     return np.sqrt(share + limits.effort_weight * found.volts / supply_v)
 
