@@ -76,7 +76,7 @@ def _shortened(part: str | None) -> str | None:
 
 
 def without_values(signature: str) -> str:
-    """The same without what stands in the parentheses of a default that is limits."""
+    """A signature without what stands in the parentheses of a default that is limits."""
     while (found := LIMITS.search(signature)) is not None:
         end, depth = found.end(), 1
         while depth:

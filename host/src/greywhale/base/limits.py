@@ -54,7 +54,7 @@ def limits_in(limits: Any) -> Iterator[Limit]:
 
 
 def _room_of(limits: Any) -> str:
-    """What stands before the name limits in the module that made them."""
+    """The module that made them, as far as the name limits in it."""
     return type(limits).__module__.partition(".limits")[0]
 
 
