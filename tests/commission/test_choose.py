@@ -60,8 +60,8 @@ def test_what_shakes_others_or_ends_the_motion_steps_back_alone(
     def play(rig: ArmOnPort | None, rows: np.ndarray) -> Trial:
         verdicts = [replace(one, score=0.9) for one in before.verdicts]
         if np.array_equal(rows[1], strong[1]):
-            verdicts = [replace(one, known=not ends, bearable=not ends) for one in verdicts]
-            verdicts[1 if ends else 3] = replace(verdicts[3], known=True, bearable=False)
+            verdicts = [replace(one, known=not ends, passes_at_a_price=not ends) for one in verdicts]
+            verdicts[1 if ends else 3] = replace(verdicts[3], known=True, passes_at_a_price=False)
         trials.done.append(replace(before, rows=rows.copy(), verdicts=tuple(verdicts)))
         return trials.done[-1]
 

@@ -19,7 +19,7 @@ from tests.commission.simulated import KI, KP, SimulatedRig
 
 @pytest.fixture
 def foresight(trials: Trials, rig: SimulatedRig) -> Foresight:
-    before = trials.play_before(rig)  # type: ignore[arg-type]
+    before = trials.play_before(lambda: rig)  # type: ignore[arg-type, return-value]
     return foresee(default_arm(), trials.table, trials.check, before.traces, before.measured)
 
 
@@ -66,14 +66,14 @@ def test_what_is_foreseen_happens_on_the_arm(trials: Trials, rig: SimulatedRig, 
     rows = scaled(trials, 1, 0.5)
     errors = []
     for name, table in (("before", trials.table), ("after", trials.table_of(rows))):
-        log = rig.play(motion, trials.book.path(f"{name}.csv"), table, watched=False).log
+        log = rig.play(motion, trials.journal.path(f"{name}.csv"), table, watched=False).log
         errors.append(np.mean((log.leader[:, 1] - log.follower[:, 1]) ** 2))
     assert errors[1] / errors[0] == pytest.approx(foresight.ratios(rows)[1], abs=0.01)
     assert errors[1] / errors[0] > COMMISSIONING_LIMITS.steps.max_error_share
 
 
 def test_a_model_that_is_wrong_about_quick_moves_is_not_asked(trials: Trials, rig: SimulatedRig) -> None:
-    before = trials.play_before(rig)  # type: ignore[arg-type]
+    before = trials.play_before(lambda: rig)  # type: ignore[arg-type, return-value]
     error = before.measured.error.copy()
     error[:, 1] *= 1.2
     doubted = replace(before.measured, error=error)
@@ -84,7 +84,7 @@ def test_a_model_that_is_wrong_about_quick_moves_is_not_asked(trials: Trials, ri
 
 def test_a_trial_with_such_a_joint_does_not_pass(trials: Trials, rig: SimulatedRig, foresight: Foresight) -> None:
     trials.foresight = foresight
-    trial = trials.play(rig, scaled(trials, 1, 0.5))  # type: ignore[arg-type]
+    trial = trials.play(lambda: rig, scaled(trials, 1, 0.5))  # type: ignore[arg-type, return-value]
     assert not trial.passed
     assert any("by the model" in fault for fault in trial.verdicts[1].faults)
     assert not any("by the model" in fault for joint in (0, 2, 3) for fault in trial.verdicts[joint].faults)

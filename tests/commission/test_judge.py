@@ -125,23 +125,23 @@ def test_a_joint_that_neighbours_push_while_it_holds_still_must_rest_after_its_o
     ],
 )
 def test_only_one_kind_of_unrest_and_only_a_little_can_be_borne(name: str, little: float, much: float) -> None:
-    assert verdict(BEFORE, 2).bearable
+    assert verdict(BEFORE, 2).passes_at_a_price
     hardly = with_joint(name, 2, little)
-    assert verdict(hardly, 2).bearable
+    assert verdict(hardly, 2).passes_at_a_price
     assert not verdict(hardly, 2).passed
-    assert 1.85 < verdict(hardly, 2).value / verdict(hardly, 2).score < 2.0
-    assert verdict(with_joint(name, 2, much), 2).value == np.inf
-    assert not verdict(with_joint(name, 2, much), 2).bearable
+    assert 1.85 < verdict(hardly, 2).ranking_cost / verdict(hardly, 2).score < 2.0
+    assert verdict(with_joint(name, 2, much), 2).ranking_cost == np.inf
+    assert not verdict(with_joint(name, 2, much), 2).passes_at_a_price
     second = "chatter" if name != "chatter" else "unrest"
     both = replace(
         hardly, **{second: with_joint(second, 2, {"chatter": 51.0, "unrest": 0.00151}[second]).__dict__[second]}
     )
-    assert not verdict(both, 2).bearable, "two at once"
+    assert not verdict(both, 2).passes_at_a_price, "two at once"
     error = BEFORE.error.copy()
     error[1, 2] = 1.1e-3
-    assert not verdict(replace(hardly, error=error), 2).bearable, "it follows worse too"
+    assert not verdict(replace(hardly, error=error), 2).passes_at_a_price, "it follows worse too"
     error[1:] = np.nan
-    assert not verdict(replace(hardly, error=error), 2).bearable, "it was not seen to the end"
+    assert not verdict(replace(hardly, error=error), 2).passes_at_a_price, "it was not seen to the end"
 
 
 def test_a_joint_that_ended_the_trial_failed_and_the_others_are_not_judged() -> None:

@@ -60,7 +60,7 @@ def whole(tmp_path_factory: pytest.TempPathFactory) -> Whole:
 
 def test_the_board_ends_with_what_passed_on_the_arm(whole: Whole) -> None:
     rig, outcome = whole.rig, whole.outcome
-    assert outcome.best.bearable
+    assert outcome.best.passes_at_a_price
     assert np.array_equal(controllers_of(rig.stored), outcome.best.rows)
     assert [verdict.score < 0.5 for verdict in outcome.best.verdicts][:3] == [True] * 3
     assert outcome.improved
@@ -104,8 +104,8 @@ def test_a_round_ends_where_more_trials_are_not_worth_their_time(
     outcome = commission(options(trials=3), lambda what, fraction, note="": steps.append((what, note)))
     trials = outcome.rounds[0].trials
     assert len(trials) == 3
-    book = outcome.trials.book
-    assert [book.get(f"after-trial-{number:02d}") is None for number in (2, 3)] == [False, True]
+    journal = outcome.trials.journal
+    assert [journal.get(f"after-trial-{number:02d}") is None for number in (2, 3)] == [False, True]
     beside = [errors_beside(outcome.predicted(trial, outcome.rounds[0]), trial) for trial in trials]
     assert [step for step in steps if "trial" in step[0]] == [
         (f"round 1, trial {number} of 3 at most: recording", note) for number, note in enumerate(["", *beside[:2]], 1)
@@ -180,8 +180,9 @@ def test_without_a_model_the_arm_is_excited_and_identified(
         ("fit", ["excite", *played]),
         ("validate", ["before"]),
     ]
-    book = outcome.trials.book
-    assert read_log(book.path("excite.csv")).time[-1] > load_leader(book.path("excite_leader.csv")).duration_s - 1.0
+    journal = outcome.trials.journal
+    excited_s = load_leader(journal.path("excite_leader.csv")).duration_s
+    assert read_log(journal.path("excite.csv")).time[-1] > excited_s - 1.0
 
 
 def test_the_report_shows_predicted_beside_measured(whole: Whole, tmp_path: Path) -> None:
@@ -209,7 +210,7 @@ def test_of_an_arm_with_two_joints_those_are_tried_and_the_others_keep_what_they
     model = write_model(tmp_path / "two.toml", arm, joints=(0, 1), parameters=before.changes())
     outcome = commission(options(model=model, arm_file=str(tmp_path / "arm.toml"), trials=2))
     assert outcome.improved
-    assert outcome.best.bearable
+    assert outcome.best.passes_at_a_price
     assert [verdict.score < 0.5 for verdict in outcome.best.verdicts] == [True] * 4
     assert outcome.best.score > 1e-3, "joints that are not in use do not count"
     assert rig.stored.joints_in_use == (0, 1)

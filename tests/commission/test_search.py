@@ -42,7 +42,7 @@ def check(rig: SimulatedRig, tmp_path_factory: pytest.TempPathFactory) -> Iterat
     folder = tmp_path_factory.mktemp("search")
     with CommissioningJournal(folder / "trials", {}, resume=False) as journal:
         trials = Trials(journal, check_motion(ROOM), rig.before)
-        before = trials.play_before(rig)  # type: ignore[arg-type]
+        before = trials.play_before(lambda: rig)  # type: ignore[arg-type, return-value]
         foresight = foresee(default_arm(), trials.table, trials.check, before.traces, before.measured)
         model = load_model(write_model(folder / "model.toml"), samples=1, force=True)
         yield CheckOnModel.of(model, trials, foresight, seed=0, threads=1)
@@ -72,7 +72,7 @@ def test_what_the_search_finds_follows_better_on_the_arm(check: CheckOnModel, ri
     check = searching(check, packs=((0.1, 96),), retry_error=np.inf)
     trials = check.trials
     found = check.search(controllers_of(trials.table), ALL, 0, show_no_progress)
-    trial = trials.play(rig, found)  # type: ignore[arg-type]
+    trial = trials.play(lambda: rig, found)  # type: ignore[arg-type, return-value]
     assert trial.passed
     assert trial.score < 0.5
 
@@ -176,7 +176,7 @@ def test_a_search_reads_no_limits_but_those_that_it_was_handed(rig: SimulatedRig
     own = copy_of(replace(COMMISSIONING_LIMITS, search=replace(COMMISSIONING_LIMITS.search, packs=((0.05, 4),))))
     with CommissioningJournal(tmp_path / "trials", {}, resume=False) as journal, reads_of(COMMISSIONING_LIMITS) as read:
         trials = Trials(journal, check_motion(ROOM, own.motion), rig.before, own)
-        before = trials.play_before(rig)  # type: ignore[arg-type]
+        before = trials.play_before(lambda: rig)  # type: ignore[arg-type, return-value]
         foresight = foresee(default_arm(), trials.table, trials.check, before.traces, before.measured, own)
         model = load_model(write_model(tmp_path / "model.toml"), samples=1, force=True, judging=own.tuning)
         check = CheckOnModel.of(model, trials, foresight, seed=0, threads=1).corrected(before)

@@ -21,35 +21,35 @@ from tests.support.arms import make_arm
 
 
 @pytest.fixture
-def book(tmp_path: Path) -> Iterator[CommissioningJournal]:
+def journal(tmp_path: Path) -> Iterator[CommissioningJournal]:
     with CommissioningJournal(tmp_path / "out", {}, resume=False) as journal:
         yield journal
 
 
-def stuck(rig: SimulatedRig, book: CommissioningJournal) -> None:
-    refuse_stuck(rig, book, ROOM)  # type: ignore[arg-type]
+def stuck(rig: SimulatedRig, journal: CommissioningJournal) -> None:
+    refuse_stuck(rig, journal, ROOM)  # type: ignore[arg-type]
 
 
-def test_an_arm_that_follows_is_moved_once(rig: SimulatedRig, book: CommissioningJournal) -> None:
-    stuck(rig, book)
+def test_an_arm_that_follows_is_moved_once(rig: SimulatedRig, journal: CommissioningJournal) -> None:
+    stuck(rig, journal)
     assert len(rig.played) == 1
-    stuck(rig, book)
+    stuck(rig, journal)
     assert len(rig.played) == 1, "not again after a break"
 
 
-def test_friction_that_holds_a_joint_gets_a_larger_motion(book: CommissioningJournal) -> None:
+def test_friction_that_holds_a_joint_gets_a_larger_motion(journal: CommissioningJournal) -> None:
     held = 8.0 * default_arm().actuator(3).torque_per_volt  # V that friction takes
     rig = SimulatedRig(make_arm(joint_3={"friction": {"coulomb": held, "breakaway": held}}))
-    stuck(rig, book)
+    stuck(rig, journal)
     assert len(rig.played) == 2
 
 
-def test_a_joint_that_cannot_move_is_named(book: CommissioningJournal) -> None:
+def test_a_joint_that_cannot_move_is_named(journal: CommissioningJournal) -> None:
     blocked = make_arm(joint_2={"friction": {"coulomb": 50.0, "breakaway": 50.0}})
     with pytest.raises(UserError, match=r"joint 2 \(wrist pitch\) did not move") as caught:
-        stuck(SimulatedRig(blocked), book)
+        stuck(SimulatedRig(blocked), journal)
     assert "joint 1" not in caught.value.message
-    assert book.get("first motion") is None
+    assert journal.get("first motion") is None
 
 
 def test_a_joint_that_runs_the_wrong_way_is_named() -> None:

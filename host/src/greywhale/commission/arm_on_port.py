@@ -60,7 +60,7 @@ class ArmOnPort:
     ) -> PlayedMotion:
         """Lead the arm along a motion with the controllers of a table, and put those from before back.
 
-        A `patient` rig waits for a follower that lags; a `watched` arm is stopped when a joint hunts. What this
+        A `patient` arm waits for a follower that lags; a `watched` arm is stopped when a joint hunts. What this
         computer itself spoilt, because it was busy, says nothing about the arm: it is led again, a few times.
         """
         try:

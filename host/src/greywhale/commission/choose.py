@@ -40,14 +40,15 @@ class JointTrials:
 
     def ranked(self) -> list[TriedController]:
         """All that passed or can be borne, the best first."""
-        return sorted((one for one in self.tried if one.verdict.bearable), key=lambda one: one.verdict.value)
+        passed = (one for one in self.tried if one.verdict.passes_at_a_price)
+        return sorted(passed, key=lambda one: one.verdict.ranking_cost)
 
     def add(self, row: Row, verdict: TrialVerdict) -> None:
         """Note a judged controller."""
         self.tried.append(TriedController(row.copy(), verdict))
 
 
-def confirm(trials: Trials, joints: Sequence[JointTrials], arm: Callable[[], ArmOnPort]) -> Trial:
+def confirm(trials: Trials, joints: Sequence[JointTrials], connect: Callable[[], ArmOnPort]) -> Trial:
     """The best set that was measured as a whole. A combination that was not measured is played before it counts."""
     before = controllers_of(trials.table)
     failed: list[list[bytes]] = [[] for _ in joints]
@@ -60,10 +61,10 @@ def confirm(trials: Trials, joints: Sequence[JointTrials], arm: Callable[[], Arm
     rows = np.array([best(joint) for joint in range(len(joints))])
     for _ in range(trials.judging.rounds.max_confirmations):
         known = next((one for one in trials.done if np.array_equal(one.rows, rows)), None)
-        trial = known or trials.play(None if trials.known() else arm(), rows)
-        if trial.bearable:
+        trial = known or trials.play(connect, rows)
+        if trial.passes_at_a_price:
             break
-        failing = np.array([verdict.known and not verdict.bearable for verdict in trial.verdicts])
+        failing = np.array([verdict.known and not verdict.passes_at_a_price for verdict in trial.verdicts])
         kept = (rows == before).all(axis=1)
         for back in (failing, ~failing & ~kept):
             stepped = rows.copy()

@@ -83,7 +83,7 @@ class TrialVerdict:
     score: float  # in what a hand leads; NaN where the check was not played to its end, 0 for one not in use
     share: float  # of all joints' error there, with the controllers from before
     known: bool  # whether the joint can be judged: the check was whole, or this joint ended it
-    bearable: bool  # whether it passed, or has no other fault than a little too much of one of these
+    passes_at_a_price: bool  # whether it passed, or has no other fault than a little too much of one of these
     judging: CommissioningLimits = field(default=COMMISSIONING_LIMITS, repr=False, compare=False)
 
     @property
@@ -96,9 +96,9 @@ class TrialVerdict:
         return self.known and not self.faults
 
     @property
-    def value(self) -> float:
+    def ranking_cost(self) -> float:
         """What joints and sets are chosen by, less is better: the score, and dearer with what has to be borne."""
-        if not self.bearable:
+        if not self.passes_at_a_price:
             return float("inf")
         above = 0.0 if self.passed else (self.excess - 1.0) / (self.judging.swings.bearable_excess - 1.0)
         return self.score * float(self.judging.judge.bearable_price**above)
@@ -153,9 +153,9 @@ def _judge(
     share = float(was[joint] / max(was.sum(), 1e-9))
     known = measured.whole or bool(faults)
     hardly = restless and len(faults) == 1 and excess <= judging.swings.bearable_excess
-    bearable = measured.whole and (hardly or not faults)
+    priced = measured.whole and (hardly or not faults)
     chatters = restless and quiet
-    return TrialVerdict(joint, tuple(faults), restless, chatters, excess, score, share, known, bearable, judging)
+    return TrialVerdict(joint, tuple(faults), restless, chatters, excess, score, share, known, priced, judging)
 
 
 @dataclass(frozen=True)

@@ -50,7 +50,7 @@ class UnvalidatedTuning:
 class RoundTuner:
     """Identifies and tunes for one round, from what is known by then. It does so once: the journal keeps it."""
 
-    book: CommissioningJournal
+    journal: CommissioningJournal
     number: int  # of the round
     options: CommissioningRequest
     nominal: ArmParameters
@@ -63,11 +63,11 @@ class RoundTuner:
     def path(self) -> Path:
         """The model's file."""
         given = self.options.model if self.fit is None else None
-        return self.book.path(f"model-{self.number}.toml") if given is None else given
+        return self.journal.path(f"model-{self.number}.toml") if given is None else given
 
     def tune(self, report: NotedProgress) -> UnvalidatedTuning | None:
         """Identify the arm and tune for it; None where the journal has both."""
-        if self.book.get(self._name) is not None:
+        if self.journal.get(self._name) is not None:
             return None
         found = None if self.fit is None else self._find_model(self.fit, report)
         tuning = tune(
@@ -90,8 +90,8 @@ class RoundTuner:
                 validated(tuned.model, evidence.logs, evidence.tables).save(self.path)
             tuning = replace(tuned.tuning, model=self._with_failures(self._model()))
             save(tuning, self._controllers)
-            self.book.note(self._name, {"steady": tuning.steady, "doubts": list(tuning.model.doubts)})
-        model, facts = self._model(), self.book.get(self._name)
+            self.journal.note(self._name, {"steady": tuning.steady, "doubts": list(tuning.model.doubts)})
+        model, facts = self._model(), self.journal.get(self._name)
         assert facts is not None
         found = controller_file.load(self._controllers)
         rows, others = controller_row(found), found.other_values()
@@ -115,7 +115,7 @@ class RoundTuner:
 
     def _model(self) -> Model:
         """Its doubts do not refuse it, because the arm itself judges what comes of it."""
-        params = self.book.path("before.toml")
+        params = self.journal.path("before.toml")
         return load_model(
             self.path, seed=self.options.seed, force=True, params=params, judging=self.options.judging.tuning
         )
@@ -131,7 +131,7 @@ class RoundTuner:
 
     @property
     def _controllers(self) -> Path:
-        return self.book.path(f"{self._name}.toml")
+        return self.journal.path(f"{self._name}.toml")
 
 
 def refuse_other_arm(

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 
@@ -76,7 +77,7 @@ class _Commissioning:
 
     def run(self) -> CommissioningResult:
         options = self.options
-        with CommissioningJournal(options.out, options.facts(), options.resume) as self.book:
+        with CommissioningJournal(options.out, options.facts(), options.resume) as self.journal:
             try:
                 return self._run()
             except (UserError, KeyboardInterrupt) as ending:
@@ -94,63 +95,63 @@ class _Commissioning:
         number, learnt = 1, self._begin()
         while True:
             first = len(self.trials.done)
-            with self._arm() as arm:
-                self._try(arm, learnt)
+            with self._connection() as connect:
+                self._try(connect, learnt)
                 self.rounds.append(Round(number, learnt, tuple(self.trials.done[first:])))
                 if number == self.options.rounds or not self._needs_another_round():
-                    return self._confirm(arm)
+                    return self._confirm(connect)
             number += 1
             learnt = self._learn(number)
 
-    def _confirm(self, arm: Callable[[], ArmOnPort]) -> CommissioningResult:
+    def _confirm(self, connect: Callable[[], ArmOnPort]) -> CommissioningResult:
         self.stage = "confirming"
-        best = confirm(self.trials, self.joints, arm)
-        if self.book.get("end") is None:
-            arm().keep(best.table)
-            self.book.note("end", {"best": best.name})
+        best = confirm(self.trials, self.joints, connect)
+        if self.journal.get("end") is None:
+            connect().keep(best.table)
+            self.journal.note("end", {"best": best.name})
         return CommissioningResult(self.trials, tuple(self.rounds), best)
 
     def _begin(self) -> learn.LearntController:
         """Excite the arm, then play the check with the controllers from before, while the first round learns."""
         with ExitStack() as stack:
-            with self._arm() as arm:
-                self._find_room(arm)
-                tuner = self._tuner(1, None if self.options.model else to_fit(self._excite(arm), self.trials))
+            with self._connection() as connect:
+                self._find_joint_range(connect)
+                tuner = self._tuner(1, None if self.options.model else to_fit(self._excite(connect), self.trials))
                 job = stack.enter_context(SideJob(tuner.tune, self._report))
-                self._play_before(arm)
+                self._play_before(connect)
             self.stage = "round 1"
             return self._finish(tuner, job.result())
 
-    def _find_room(self, arm: Callable[[], ArmOnPort]) -> None:
+    def _find_joint_range(self, connect: Callable[[], ArmOnPort]) -> None:
         """Refuse what must not move, find out where the joints may go, and design the excitation if it comes next."""
-        options, book = self.options, self.book
-        facts = book.get("start")
+        options, journal = self.options, self.journal
+        facts = journal.get("start")
         if facts is None:
-            rig = arm()
+            arm = connect()
             wanted = options.judging.tuning.identification.excitation
-            refuse_uncalibrated(self.nominal, rig.before, options.judging.tuning.model)
-            limits = limits_of(self.nominal, rig.before, rig.pose(), options.ranges or {}, wanted)
-            room = JointRange(limits.pose, limits.low, limits.high)
+            refuse_uncalibrated(self.nominal, arm.before, options.judging.tuning.model)
+            limits = limits_of(self.nominal, arm.before, arm.pose(), options.ranges or {}, wanted)
+            joint_range = JointRange(limits.pose, limits.low, limits.high)
             if options.model is None:
-                with SideJob(lambda report: self._design(room, rig.before, report), self._report) as job:
-                    start.refuse_stuck(rig, book, room, options.judging.motion)
+                with SideJob(lambda report: self._design(joint_range, arm.before, report), self._report) as job:
+                    start.refuse_stuck(arm, journal, joint_range, options.judging.motion)
                     job.result()
             else:
-                start.refuse_stuck(rig, book, room, options.judging.motion)
-            save_parameters(book.path("before.toml"), rig.before)
+                start.refuse_stuck(arm, journal, joint_range, options.judging.motion)
+            save_parameters(journal.path("before.toml"), arm.before)
             facts = {
-                "board": rig.before.board.key,
-                "room": [array.tolist() for array in (room.pose, room.low, room.high)],
+                "board": arm.before.board.key,
+                "room": [array.tolist() for array in (joint_range.pose, joint_range.low, joint_range.high)],
             }
-            book.note("start", facts)
-        self.before = before = load_parameters(book.path("before.toml")).for_board(find_board(facts["board"]))
-        self.room = JointRange(*(np.array(values) for values in facts["room"]))
-        self.trials = Trials(book, check_motion(self.room, options.judging.motion), before, options.judging)
+            journal.note("start", facts)
+        self.before = before = load_parameters(journal.path("before.toml")).for_board(find_board(facts["board"]))
+        self.joint_range = JointRange(*(np.array(values) for values in facts["room"]))
+        self.trials = Trials(journal, check_motion(self.joint_range, options.judging.motion), before, options.judging)
 
-    def _play_before(self, arm: Callable[[], ArmOnPort]) -> None:
+    def _play_before(self, connect: Callable[[], ArmOnPort]) -> None:
         self.stage = "before"
         trials, options = self.trials, self.options
-        first = trials.play_before(None if trials.known() else arm())
+        first = trials.play_before(connect)
         rows = controllers_of(trials.table)
         self.joints = [JointTrials() for _ in range(JOINTS)]
         for one, row, verdict in zip(self.joints, rows, first.verdicts, strict=True):
@@ -161,15 +162,15 @@ class _Commissioning:
 
     def _learn(self, number: int) -> learn.LearntController:
         """The model and controllers of a later round."""
-        with self._arm() as arm:
-            fit = to_fit(self._excite(arm), self.trials)
+        with self._connection() as connect:
+            fit = to_fit(self._excite(connect), self.trials)
         self.stage = f"round {number}"
         tuner = self._tuner(number, fit)
         return self._finish(tuner, tuner.tune(self._report))
 
     def _tuner(self, number: int, fit: Evidence | None) -> learn.RoundTuner:
         return learn.RoundTuner(
-            self.book,
+            self.journal,
             number,
             self.options,
             self.nominal,
@@ -194,18 +195,18 @@ class _Commissioning:
 
     def _search_on_model(self, name: str, begin: Controllers, vary: Flags) -> Controllers:
         """Controllers around others that the round's model prefers on the check; noted in the journal."""
-        facts = self.book.get(name)
+        facts = self.journal.get(name)
         if facts is None:
             found = self.on_model.search(begin, vary, self.options.seed, self._report)
             facts = {"controllers": found.tolist()}
-            self.book.note(name, facts)
+            self.journal.note(name, facts)
         return np.array(facts["controllers"], dtype=np.int32)
 
-    def _design(self, room: JointRange, table: ParameterTable, report: NotedProgress) -> None:
+    def _design(self, joint_range: JointRange, table: ParameterTable, report: NotedProgress) -> None:
         """Design the motion that shows most about the arm."""
         designed = design(
             self.nominal,
-            room.pose,
+            joint_range.pose,
             table=table,
             ranges=self.options.ranges,
             seed=self.options.seed,
@@ -213,33 +214,33 @@ class _Commissioning:
             report=report,
             judging=self.options.judging.tuning.identification,
         )
-        save_leader(self.book.path(EXCITING), designed.motion)
+        save_leader(self.journal.path(EXCITING), designed.motion)
 
-    def _excite(self, arm: Callable[[], ArmOnPort]) -> Log:
+    def _excite(self, connect: Callable[[], ArmOnPort]) -> Log:
         """The log of that motion."""
         self.stage = "excite"
-        path, table = self.book.path("excite.csv"), self.trials.table
-        if self.book.get("excite") is None:
+        path, table = self.journal.path("excite.csv"), self.trials.table
+        if self.journal.get("excite") is None:
             if self.options.model is not None:
-                self._design(self.room, table, self._report)
-            played = arm().play(load_leader(self.book.path(EXCITING)), path, table, patient=True, watched=False)
+                self._design(self.joint_range, table, self._report)
+            played = connect().play(load_leader(self.journal.path(EXCITING)), path, table, patient=True, watched=False)
             if played.stopped:
                 raise AnewError(f"the arm cannot be excited: {played.stopped}; narrow the --range.")
-            self.book.note("excite", {"log": path.name})
+            self.journal.note("excite", {"log": path.name})
         return read_evidence(path)
 
-    def _try(self, arm: Callable[[], ArmOnPort], learnt: learn.LearntController) -> None:
+    def _try(self, connect: Callable[[], ArmOnPort], learnt: learn.LearntController) -> None:
         """Try a round's controllers on the arm; those that fail are searched again with what the arm showed."""
         trials, rows = self.trials, learnt.controllers
         hoped: list[float] = []
         for number in range(1, self.options.trials + 1):
             self.trying = f", trial {number} of {self.options.trials} at most"
-            trial = trials.play(None if trials.known() else arm(), rows)
+            trial = trials.play(connect, rows)
             self.tried = errors_beside(predict_trial(learnt.arm, trial, trials.check), trial)
             for one, row, verdict in zip(self.joints, rows, trial.verdicts, strict=True):
                 if verdict.known:
                     one.add(row, verdict)
-            hoped.append(sum(one.best.verdict.share * one.best.verdict.value for one in self.joints))
+            hoped.append(sum(one.best.verdict.share * one.best.verdict.ranking_cost for one in self.joints))
             failed = np.array([verdict.known and not verdict.passed for verdict in trial.verdicts])
             if not failed.any() or is_enough(hoped, self.options.judging.rounds) or number == self.options.trials:
                 break
@@ -260,20 +261,13 @@ class _Commissioning:
 
     def _needs_another_round(self) -> bool:
         """Whether another round may help: a joint follows little better than before."""
-        return any(one.best.verdict.value > self.options.judging.rounds.max_error_share for one in self.joints)
+        return any(one.best.verdict.ranking_cost > self.options.judging.rounds.max_error_share for one in self.joints)
 
     def _report(self, what: str, fraction: float, note: str = "") -> None:
         self.report(f"{self.stage}{self.trying}: {what}", fraction, note or self.tried)
 
     @contextmanager
-    def _arm(self) -> Iterator[Callable[[], ArmOnPort]]:
+    def _connection(self) -> Iterator[Callable[[], ArmOnPort]]:
         """The arm, connected when it is first asked for, and left with its motors off at the end."""
         with ExitStack() as stack:
-            rigs: list[ArmOnPort] = []
-
-            def arm() -> ArmOnPort:
-                if not rigs:
-                    rigs.append(stack.enter_context(connected(self.options.port, self.before, self._report)))
-                return rigs[0]
-
-            yield arm
+            yield cache(lambda: stack.enter_context(connected(self.options.port, self.before, self._report)))

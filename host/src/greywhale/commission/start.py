@@ -16,24 +16,26 @@ from greywhale.protocol.firmware import JOINTS
 
 
 def refuse_stuck(
-    rig: ArmOnPort,
-    book: CommissioningJournal,
-    room: JointRange,
+    arm: ArmOnPort,
+    journal: CommissioningJournal,
+    joint_range: JointRange,
     limits: MotionLimits = COMMISSIONING_LIMITS.motion,
 ) -> None:
     """Move every joint a little, then, where friction held one, a little more. Refuse an arm that does not follow."""
-    if book.get("first motion") is not None:
+    if journal.get("first motion") is not None:
         return
     stuck: list[int] = []
     for number, size in enumerate((limits.first_rad, limits.first_again_rad), 1):
-        played = rig.play(first_motion(room, size, limits), book.path(f"first-{number}.csv"), rig.before, patient=True)
+        motion, path = first_motion(joint_range, size, limits), journal.path(f"first-{number}.csv")
+        played = arm.play(motion, path, arm.before, patient=True)
         if played.stopped:
             raise UserError(f"the arm cannot be commissioned: {played.stopped} in the little first motion.")
         shares = shares_moved(played.log)
         _refuse_backwards(shares, limits.least_way_share)
-        stuck = [joint for joint in rig.before.joints_in_use if shares[joint] < limits.least_way_share]
+        stuck = [joint for joint in arm.before.joints_in_use if shares[joint] < limits.least_way_share]
         if not stuck:
-            book.note("first motion", {"size_rad": size, "shares_moved": [round(float(share), 3) for share in shares]})
+            moved = [round(float(share), 3) for share in shares]
+            journal.note("first motion", {"size_rad": size, "shares_moved": moved})
             return
     named = " and ".join(f"joint {joint} ({JOINT_NAMES[joint]})" for joint in stuck)
     raise UserError(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Annotated, TypedDict
@@ -59,9 +60,9 @@ class Trial:
         return all(verdict.passed for verdict in self.verdicts)
 
     @property
-    def bearable(self) -> bool:
+    def passes_at_a_price(self) -> bool:
         """Whether all joints passed, or are a little restless and have no other fault."""
-        return all(verdict.bearable for verdict in self.verdicts)
+        return all(verdict.passes_at_a_price for verdict in self.verdicts)
 
     @property
     def score(self) -> float:
@@ -69,9 +70,9 @@ class Trial:
         return sum(verdict.share * verdict.score for verdict in self.verdicts)
 
     @property
-    def value(self) -> float:
+    def ranking_cost(self) -> float:
         """The same with what has to be borne priced; less is better."""
-        return sum(verdict.share * verdict.value for verdict in self.verdicts)
+        return sum(verdict.share * verdict.ranking_cost for verdict in self.verdicts)
 
     def as_dict(self) -> TrialFacts:
         return {
@@ -91,12 +92,12 @@ class Trials:
 
     def __init__(
         self,
-        book: CommissioningJournal,
+        journal: CommissioningJournal,
         check: Check,
         before: ParameterTable,
         judging: CommissioningLimits = COMMISSIONING_LIMITS,
     ) -> None:
-        self.book = book
+        self.journal = journal
         self.judging = judging
         self.check = check
         self.table = before
@@ -112,13 +113,9 @@ class Trials:
         """The board's table with these controllers, for a trial to come."""
         return self.table.with_controllers(rows).with_raw(self.others)
 
-    def known(self) -> bool:
-        """Whether the next trial was played before an interrupt, so that no arm is needed for it."""
-        return self.book.get(self._next_name()) is not None
-
-    def play_before(self, rig: ArmOnPort | None) -> Trial:
-        """Play the check with the controllers from before."""
-        trial = self._tried(rig, controllers_of(self.table), watched=False)
+    def play_before(self, connect: Callable[[], ArmOnPort]) -> Trial:
+        """Play the check with the controllers from before; see `play`."""
+        trial = self._tried(connect, controllers_of(self.table), watched=False)
         if trial.stopped:
             raise AnewError(
                 f"with the controllers from before, the check ended early: {trial.stopped}; narrow the --range, or "
@@ -126,36 +123,37 @@ class Trials:
             )
         return trial
 
-    def play(self, rig: ArmOnPort | None, rows: Controllers) -> Trial:
-        """Play the check with these controllers, or take the result from the journal."""
-        return self._tried(rig, rows, watched=True)
+    def play(self, connect: Callable[[], ArmOnPort], rows: Controllers) -> Trial:
+        """Play the check with these controllers on the arm; where the journal has that trial, without connecting it."""
+        return self._tried(connect, rows, watched=True)
 
-    def _tried(self, rig: ArmOnPort | None, rows: Controllers, watched: bool) -> Trial:
+    def _tried(self, connect: Callable[[], ArmOnPort], rows: Controllers, watched: bool) -> Trial:
         name = self._next_name()
-        trial = self._judged(name, rows, *self._played(name, rig, rows, watched))
+        trial = self._judged(name, rows, *self._played(name, connect, rows, watched))
         self.done.append(trial)
         return trial
 
-    def _played(self, name: str, rig: ArmOnPort | None, rows: Controllers, watched: bool) -> tuple[Path, PlayedMotion]:
+    def _played(
+        self, name: str, connect: Callable[[], ArmOnPort], rows: Controllers, watched: bool
+    ) -> tuple[Path, PlayedMotion]:
         """A log and how it ended. The controllers from before may hunt already: unwatched, they do so to the end."""
-        path = self.book.path(f"{name}.csv")
-        facts = self.book.get(name)
+        path = self.journal.path(f"{name}.csv")
+        facts = self.journal.get(name)
         if facts is not None:
             if facts["controllers"] != rows.tolist():
                 raise AnewError(
-                    f"{self.book.folder}: {name} of this commissioning was made by another version of greywhale, which "
-                    "would go on differently; begin anew in another folder."
+                    f"{self.journal.folder}: {name} of this commissioning was made by another version of greywhale, "
+                    "which would go on differently; begin anew in another folder."
                 )
             return path, PlayedMotion(read_evidence(path), facts["stopped"], facts["joint"])
-        assert rig is not None
-        played = rig.play(self.check.motion, path, self.table_of(rows), watched=watched)
-        self.book.note(name, {"controllers": rows.tolist(), "stopped": played.stopped, "joint": played.joint})
+        played = connect().play(self.check.motion, path, self.table_of(rows), watched=watched)
+        self.journal.note(name, {"controllers": rows.tolist(), "stopped": played.stopped, "joint": played.joint})
         return path, played
 
     def ranked(self) -> list[Trial]:
         """Sets of controllers that can be borne as a whole, the best first; those from before always can."""
-        whole = [one for one in self.done[1:] if one.bearable]
-        return sorted([*whole, self.before], key=lambda one: one.value)
+        whole = [one for one in self.done[1:] if one.passes_at_a_price]
+        return sorted([*whole, self.before], key=lambda one: one.ranking_cost)
 
     def _next_name(self) -> str:
         return f"trial-{len(self.done):02d}" if self.done else BEFORE
