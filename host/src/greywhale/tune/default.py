@@ -33,7 +33,7 @@ from greywhale.optimise.optimiser import PACK
 from greywhale.optimise.shift_invariant import ShiftInvariantWolfWhale
 from greywhale.protocol.joints import unused
 from greywhale.protocol.table import CONTROLLER_COLUMNS
-from greywhale.tune.judge.choose import Judge, Remembering, choose, next_best
+from greywhale.tune.judge.choose import CachedJudge, Judge, choose, next_best
 from greywhale.tune.judge.held_out import judge_held_out
 from greywhale.tune.judge.margins import MOVING, Margin, Margins, penalty
 from greywhale.tune.judge.standard import Standard
@@ -76,6 +76,16 @@ FULL_PACK = 16  # on two plants: that fills the lanes of the simulation twice
 SHORT_BUDGET = 1000  # evaluations; below that, more rounds of a smaller pack find more
 JUDGING_SEED = 1000  # of sensor noise that the search does not know by heart
 KU, KI = (CONTROLLER_COLUMNS.index(name) for name in ("ku_mv", "ki"))
+
+
+@dataclass(frozen=True)
+class _Chosen:
+    """Controllers (4, 13), their margins, and the costs (4,) of those from before and of themselves."""
+
+    controllers: Controllers
+    margins: tuple[Margin, ...]
+    cost_before: Floats
+    cost_after: Floats
 
 
 class DefaultMethod:
@@ -192,42 +202,56 @@ class DefaultMethod:
         # Within what is searched: nothing changes where a factor is not searched, or its bounds are narrower.
         return np.concatenate([kept, self.space.controllers(self.space.points(calmer))])
 
-    def _choose(self) -> tuple[Controllers, tuple[Margin, ...], Floats, Floats]:
-        """The combination that is uploaded, its margins, and the costs of what was before and of itself.
+    def _choose(self) -> _Chosen:
+        """The combination that is uploaded.
 
         Single precision chooses, which is 25 times as fast. The bench's own arithmetic has the last word: a joint that
         costs more than before there, or falls short of the standard, is searched again, then gets its next best, and at
         last what it had.
         """
+        judge, judge_exactly = CachedJudge(self.judge_costs), CachedJudge(partial(self.judge_costs, exact=True))
+        first, contenders = self._choose_first(judge)
+        after = first.copy()
+        others: dict[int, list[Controllers]] = {}
+        while True:
+            chosen, refused = self._judge_exactly(after, judge, judge_exactly)
+            if not refused.any():
+                return chosen
+            if not others and not self.limits.by_the_arm:
+                contenders = np.concatenate([self._search_again(first, refused), contenders])
+            for joint in map(int, np.flatnonzero(refused)):
+                if joint not in others:
+                    still = np.flatnonzero(contenders[:, joint, KI] == 0)
+                    best = next_best(first, contenders, joint, judge, still, self.limits.choice)
+                    others[joint] = [*best, self.start[joint]]
+                after[joint] = others[joint].pop(0)
+
+    def _choose_first(self, judge: Judge) -> tuple[Controllers, Controllers]:
+        """The best combination of all contenders, and those (k, 4, 13).
+
+        A joint that keeps what it had, though its search found something else, is searched again.
+        """
         contenders, limits = self._contenders(), self.limits.choice
-        judge, judge_exactly = Remembering(self.judge_costs), Remembering(partial(self.judge_costs, exact=True))
         first, _, _ = choose(self.start, contenders, judge, limits)
         missed = (first == self.start).all(axis=1) & (contenders[0] != self.start).any(axis=1)
         if missed.any() and not self.limits.by_the_arm:
             rows = np.where(missed[:, None], contenders[0], first)
             contenders = np.concatenate([self._search_again(rows, missed), contenders])
             first, _, _ = choose(self.start, contenders, judge, limits)
-        after = first.copy()
-        others: dict[int, list[Controllers]] = {}
-        while True:
-            before_cost, after_cost = judge_exactly(np.stack([self.start, after]))
-            margins = self.judging_margins.check(after)
-            changed = (after != self.start).any(axis=1)
-            worse = after_cost > np.where(changed, limits.joint_slack, limits.kept_joint_slack) * before_cost
-            if not self.limits.by_the_arm:
-                worse |= self.standard.joints_short(margins, ~changed)
-            if worse.any() and not (worse & changed).any():
-                worse = self._disturbing(after, worse, judge)
-            if not (worse & changed).any():
-                return after, margins, before_cost, after_cost
-            if not others and not self.limits.by_the_arm:
-                contenders = np.concatenate([self._search_again(first, worse & changed), contenders])
-            for joint in map(int, np.flatnonzero(worse & changed)):
-                if joint not in others:
-                    still = np.flatnonzero(contenders[:, joint, KI] == 0)
-                    best = next_best(first, contenders, joint, judge, still, limits)
-                    others[joint] = [*best, self.start[joint]]
-                after[joint] = others[joint].pop(0)
+        return first, contenders
+
+    def _judge_exactly(self, after: Controllers, judge: Judge, judge_exactly: Judge) -> tuple[_Chosen, Flags]:
+        """A combination with its margins and costs, and its changed joints (4,) that must not stay as they are."""
+        limits = self.limits.choice
+        cost_before, cost_after = judge_exactly(np.stack([self.start, after]))
+        margins = self.judging_margins.check(after)
+        changed = (after != self.start).any(axis=1)
+        worse = cost_after > np.where(changed, limits.joint_slack, limits.kept_joint_slack) * cost_before
+        if not self.limits.by_the_arm:
+            worse |= self.standard.joints_short(margins, ~changed)
+        if worse.any() and not (worse & changed).any():
+            worse = self._disturbing(after, worse, judge)
+        return _Chosen(after, margins, cost_before, cost_after), worse & changed
 
     def _search_again(self, rows: Controllers, short: Flags) -> Controllers:
         """The best few (k, 4, 13) of a last search for joints that fall `short` (4,) beside the others of `rows`.
@@ -259,7 +283,8 @@ class DefaultMethod:
     def judge(self) -> Judgement:
         task, model = self.task, self.model
         task.report("judging", 0.0)
-        after, margins, cost_before, cost_after = self._choose()
+        chosen = self._choose()
+        after = chosen.controllers
         idle = list(unused(model.arm.joints_in_use))
         after[idle] = task.before[idle]  # whatever was tried there made no difference
         task.report("judging", 0.5)
@@ -270,11 +295,11 @@ class DefaultMethod:
         task.report("judging", 1.0)
         return Judgement(
             after=after,
-            cost_before=tuple(map(float, cost_before)),
-            cost_after=tuple(map(float, cost_after)),
-            notes=_notes(margins, self.limits.swings),
+            cost_before=tuple(map(float, chosen.cost_before)),
+            cost_after=tuple(map(float, chosen.cost_after)),
+            notes=_notes(chosen.margins, self.limits.swings),
             margins_before=margins_before,
-            margins=margins,
+            margins=chosen.margins,
             held_out=held_out,
         )
 

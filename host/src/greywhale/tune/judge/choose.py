@@ -15,7 +15,7 @@ Judge = Callable[[Controllers], Floats]
 ROUNDS = 3  # of trying other candidates of joints that disappoint
 
 
-class Remembering:
+class CachedJudge:
     """A judge that does not judge the same row again: a row's costs (4,) depend on that row (4, 13) alone."""
 
     def __init__(self, judge: Judge) -> None:
