@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Self
 
 import pytest
 
@@ -49,6 +50,28 @@ def test_a_board_without_bootloader_is_named() -> None:
         with pytest.raises(UserError, match="no bootloader answers at 115200 and 57600 baud"):
             find_bootloader(line.port, [NEW_NANO, OLD_NANO], [])
         assert line.heard == {115200, 57600}
+
+
+def test_a_bootloader_that_flashes_its_led_first_is_not_flooded() -> None:
+    """Optiboot looks at nothing for 375 ms and has room for two bytes; the chip starts 65 ms after its reset."""
+    asked: list[float] = []
+
+    class Busy(Version1):
+        def open(self, restart: bool, baud: int) -> Self:
+            self.opened = self.clock()
+            return super().open(restart, baud)
+
+        def write(self, data: bytes) -> None:
+            assert len(data) == 2
+            asked.append(self.clock() - self.opened)
+
+    with Busy(115200, ATMEGA328P) as line, pytest.raises(UserError, match="no bootloader answers"):
+        find_bootloader(line.port, [NEW_NANO], [])
+    assert len(asked) == 6, "a question that is lost is repeated"
+    for first, second in zip(asked[::2], asked[1::2], strict=True):
+        assert first > 0.065
+        assert second - first > 0.375
+        assert second < 0.75, "it waits for a second"
 
 
 OTHERS = Path(__file__).parent / "bootloaders"

@@ -15,6 +15,8 @@ from greywhale.board.flash.talk import Talk
 from greywhale.protocol.lines import open_line
 
 _GREETING_ROUNDS = 3  # through the likely dialects, each after a reset
+# From the reset until a bootloader listens: the start-up delay of an Arduino's fuses is 65 ms.
+_START_S = 0.1
 
 
 @dataclass(frozen=True)
@@ -61,4 +63,5 @@ def enter_bootloader(port: str, dialect: Dialect) -> Iterator[Stk500]:
 @contextmanager
 def _open(port: str, dialect: Dialect) -> Iterator[Stk500]:
     with closing(open_line(port, baud=dialect.baud)) as line:
+        line.wait(_START_S)
         yield LANGUAGES[dialect.version](Talk(line))

@@ -56,7 +56,7 @@ class Memory:
             report(what, done / len(blocks))
 
     def _resume(self, address: int) -> None:
-        if self.line.enter() or self._restart is None:
+        if self.line.enter(lost=True) or self._restart is None:
             return
         try:
             self.line = self._restart()

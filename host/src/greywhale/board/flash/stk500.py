@@ -19,8 +19,8 @@ class Stk500(Protocol):
 
     def __init__(self, talk: Talk) -> None: ...
 
-    def enter(self) -> bool:
-        """Ask until it answers, also after a byte was lost; whether it did."""
+    def enter(self, lost: bool = False) -> bool:
+        """Ask until it answers, after a restart or after bytes were `lost`; whether it did."""
 
     def signature(self) -> bytes | None:
         """The chip's."""
@@ -43,8 +43,8 @@ class Version1:
     def __init__(self, talk: Talk) -> None:
         self._talk = talk
 
-    def enter(self) -> bool:
-        return self._talk.hear(b"0 ", self._IN_SYNC + self._OK)
+    def enter(self, lost: bool = False) -> bool:
+        return self._talk.hear(b"0 ", self._IN_SYNC + self._OK, lost)
 
     def signature(self) -> bytes | None:
         return self._ask(b"u", 3)
@@ -82,9 +82,9 @@ class Version2:
         self._sequence = 1  # with 1 every bootloader takes a message, older ones else only with the next number
         self._at: int | None = None  # where it goes on by itself
 
-    def enter(self) -> bool:
+    def enter(self, lost: bool = False) -> bool:
         self._sequence, self._at = 1, None
-        return self._talk.hear(self._message(self._SIGN_ON), b"\x0e\x01\x00\x08AVRISP_2")
+        return self._talk.hear(self._message(self._SIGN_ON), b"\x0e\x01\x00\x08AVRISP_2", lost)
 
     def signature(self) -> bytes | None:
         """Byte by byte, as SPI commands that the bootloader answers itself."""
