@@ -3,22 +3,29 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 from greywhale.base.errors import UserError
 from greywhale.board import flash
+from greywhale.board.flash import platformio
 from greywhale.board.flash.bootloader import Bootloader, Dialect, find_bootloader
-from greywhale.board.flash.images import read_image
+from greywhale.board.flash.images import read_image, read_pieces
+from greywhale.board.flash.targets import BOARDS
 from greywhale.cli.story import BenchProcess
 from greywhale.protocol import schema
 from greywhale.protocol.transport import BAUD, LINES, Line
+from greywhale_sim import assemble
 from greywhale_sim.assemble import BUILDS
+from greywhale_sim.wiring import NANO
 from greywhale_sim.words import lock_step
 from tests.board.flash.hex_files import hex_text
+from tools import ROOT
 
 IMAGES = {name: BUILDS / board.environment / "firmware.hex" for name, board in flash.BOARDS.items()}
+OPTIBOOT = ROOT / "tests/board/flash/bootloaders/optiboot.hex"
 Start = Callable[..., BenchProcess]
 
 
@@ -27,7 +34,7 @@ def test_flash_a_mega_that_an_old_program_fills(start_bench: Start, tmp_path: Pa
     """PlatformIO builds; the image's part behind its gap is erased before it is written."""
     (tmp_path / "old.hex").write_text(hex_text(bytes(0x20100)))  # what is not erased stays zero
     bench = start_bench("--firmware", str(tmp_path / "old.hex"))
-    hello = flash.flash(bench.port, "mega")
+    hello = flash.flash(bench.port, "mega", firmware_dir=platformio.CHECKOUT)
     assert (hello.schema_hash, hello.board) == (schema.SCHEMA_HASH, schema.Board.MEGA2560)
 
 
@@ -43,6 +50,7 @@ def test_flash_a_blank_nano(start_bench: Start) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("board", IMAGES)
 def test_a_flash_that_was_interrupted_is_repeated(board: str) -> None:
+    """Neither changes the EEPROM."""
     image = read_image(IMAGES[board]).memory
 
     def interrupt(what: str, fraction: float) -> None:
@@ -50,11 +58,14 @@ def test_a_flash_that_was_interrupted_is_repeated(board: str) -> None:
             raise KeyboardInterrupt
 
     with lock_step("--blank", "--board", board) as bench:
+        kept = bytes(at * 7 & 255 for at in range(len(bench.server.board.eeprom())))
+        bench.server.board.set_eeprom(kept)
         with pytest.raises(KeyboardInterrupt):
             flash.flash(bench.port, board, hex_file=IMAGES[board], report=interrupt)
         assert bench.server.board.flash()[: len(image)] != image
         flash.flash(bench.port, board, hex_file=IMAGES[board])
         assert bench.server.board.flash()[: len(image)] == image
+        assert bench.server.board.eeprom() == kept
 
 
 class BadCable:
@@ -100,6 +111,23 @@ def test_bytes_that_are_lost_both_ways_do_no_harm(board: str) -> None:
         flash.flash(bench.port, board, hex_file=IMAGES[board])
         assert bench.server.board.flash()[: len(image)] == image
     assert sorted(lost) == ["answer", "answer", "question", "question"]
+
+
+@pytest.mark.slow
+def test_flash_a_newer_nano(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """With optiboot, which first flashes its LED and loses questions meanwhile. It runs anywhere, and here has room."""
+    code = read_pieces(OPTIBOOT)[0][1]
+    (tmp_path / "optiboot.hex").write_text(hex_text(code, start=0x7C00))
+    (tmp_path / "loop.hex").write_text(hex_text(b"\xff\xcf"))
+    nano = replace(NANO, bootloader=tmp_path / "optiboot.hex", bootloader_baud=115200)
+    monkeypatch.setattr(assemble, "BOARDS", {"nano": nano})
+    image = read_image(IMAGES["nano"]).memory
+    with lock_step("--board", "nano", "--firmware", str(tmp_path / "loop.hex")) as bench:
+        hello = flash.flash(bench.port, hex_file=IMAGES["nano"])
+        assert hello.board is schema.Board.NANO328
+        assert bench.server.board.flash()[: len(image)] == image
+        new_nano = Bootloader(Dialect(1, 115200), BOARDS["nano"].signature)
+        assert find_bootloader(bench.port, [new_nano.dialect], []) == new_nano
 
 
 @pytest.mark.slow

@@ -7,6 +7,8 @@ from pathlib import Path
 
 from greywhale.protocol import schema
 
+SOURCES = "0123456789abcdef"  # the digest in the records below
+
 
 def record(kind: int, address: int, data: bytes) -> str:
     body = bytes([len(data), *address.to_bytes(2, "big"), kind]) + data
@@ -26,7 +28,7 @@ def hex_text(data: bytes, start: int = 0) -> str:
 
 def image_record(signature: bytes, layout: int = 1) -> bytes:
     """The record that firmware/src/image_record.cpp puts into each image."""
-    fields = (b"greywhale image\0", layout, signature, 3, 2, 1, schema.SCHEMA_HASH, b"0123456789abcdef\0")
+    fields = (b"greywhale image\0", layout, signature, 3, 2, 1, schema.SCHEMA_HASH, SOURCES.encode() + b"\0")
     return struct.pack("<16sB3s3BI17s", *fields)
 
 

@@ -179,6 +179,22 @@ def test_an_installed_package_writes_the_image_that_came_with_it(
     assert holds(bootloader, image)
 
 
+def test_a_checkout_writes_its_last_build_while_that_is_of_its_sources(
+    bootloader: Version2, port: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "platformio.ini").write_text("")
+    last, new = (write_image(tmp_path / name, MEGA.signature, size) for name, size in (("last", 600), ("new", 700)))
+    current = [read_image(last), None]
+    monkeypatch.setattr(platformio, "CHECKOUT", tmp_path)
+    monkeypatch.setattr(platformio, "current_build", lambda firmware, board: current.pop(0))
+    monkeypatch.setattr(platformio, "build", lambda firmware, board, report: new)
+    for image in (last, new):
+        module.flash(port, "mega")
+        assert holds(bootloader, image)
+    module.flash(port, "mega", firmware_dir=tmp_path)
+    assert holds(bootloader, new), "a folder that is named is built"
+
+
 @pytest.mark.parametrize("baud", [115200, 57600])
 def test_platformio_builds_and_does_not_upload(baud: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "platformio.ini").write_text("")

@@ -10,7 +10,7 @@ from greywhale.base.errors import UserError
 from greywhale.board.flash.images import Record, check_image, read_image
 from greywhale.board.flash.targets import BOARDS
 from greywhale.protocol import schema
-from tests.board.flash.hex_files import hex_text, image_record, record, write_image
+from tests.board.flash.hex_files import SOURCES, hex_text, image_record, record, write_image
 
 MEGA, NANO = BOARDS["mega"], BOARDS["nano"]
 
@@ -18,7 +18,7 @@ MEGA, NANO = BOARDS["mega"], BOARDS["nano"]
 def test_an_image_tells_chip_version_schema_and_sources(tmp_path: Path) -> None:
     image = read_image(write_image(tmp_path / "a.hex", MEGA.signature))
     assert image.end == 600
-    assert image.record == Record(MEGA.signature, "3.2.1", schema.SCHEMA_HASH, "0123456789abcdef")
+    assert image.record == Record(MEGA.signature, "3.2.1", schema.SCHEMA_HASH, SOURCES)
 
 
 def test_addresses_above_64_kilobytes_are_understood(tmp_path: Path) -> None:

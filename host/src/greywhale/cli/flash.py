@@ -28,9 +28,9 @@ class FlashAnswer(OnPort):
 def command(board: str | None, firmware: Path | None, hex_file: Path | None, port: str | None, as_json: bool) -> None:
     """Put the firmware onto a board.
 
-    An installed greywhale writes the firmware that came with it; in a checkout, PlatformIO builds it first. A simulated
-    board is flashed through its bootloader exactly as a real one. Afterwards the new firmware is greeted, so success
-    means that it runs.
+    An installed greywhale writes the firmware that came with it; in a checkout, PlatformIO builds it first where its
+    source has changed. A simulated board is flashed through its bootloader exactly as a real one. Afterwards the new
+    firmware is greeted, so success means that it runs.
     """
     if firmware is not None and hex_file is not None:
         raise click.UsageError("--firmware and --hex exclude each other.")

@@ -30,7 +30,7 @@ def flash(
     """Flash the board on `port` and return the new firmware's greeting.
 
     `board` is mega or nano; without it the port or the bootloader tells. The image is `hex_file`, else it is built from
-    `firmware_dir` or from the checkout this package runs from, else it is the one that came with the package.
+    `firmware_dir`, else it is that of the checkout this package runs from, else the one that came with the package.
     """
     expected = _expected_board(port, board)
     image = None if hex_file is None else read_image(Path(hex_file))
@@ -40,7 +40,8 @@ def flash(
         name, found = find_board(port, expected)
         target = BOARDS[name]
         if sources is not None:  # nothing is erased before there is something to write
-            image = read_image(platformio.build(sources, target, report))
+            image = platformio.current_build(sources, target) if firmware_dir is None else None
+            image = image or read_image(platformio.build(sources, target, report))
         image = image or _packaged(name)
         check_image(image, target, port)
         write_image(port, found.dialect, image, target.page, report)

@@ -1,15 +1,17 @@
-"""Builds the firmware from its source tree with PlatformIO."""
+"""Builds the firmware from its source tree with PlatformIO, where the last build is not of these sources."""
 
 from __future__ import annotations
 
 import importlib.util
 import os
+import runpy
 import shutil
 import sys
 from pathlib import Path
 
 from greywhale.base.errors import BadUsage, UserError
 from greywhale.base.types import Progress
+from greywhale.board.flash.images import Image, read_image
 from greywhale.board.flash.runner import Tool, run_tool
 from greywhale.board.flash.targets import FlashBoard
 
@@ -43,6 +45,26 @@ def last_build(firmware: Path, board: FlashBoard) -> Path | None:
     """The HEX file that was built last for the board; None where there is none."""
     built = _build_folder(firmware, platformio_environment(firmware)) / board.environment / "firmware.hex"
     return built if built.is_file() else None
+
+
+def current_build(firmware: Path, board: FlashBoard) -> Image | None:
+    """The image that was built last for the board, if its record names these very sources; None where it does not.
+
+    Whoever gives PlatformIO settings may want another build of the same sources.
+    """
+    built = last_build(firmware, board)
+    if built is None or any(name.startswith("PLATFORMIO_") for name in os.environ):
+        return None
+    try:
+        image = read_image(built)
+    except BadUsage:  # a build that was interrupted
+        return None
+    return image if image.record is not None and image.record.sources == _source_digest(firmware) else None
+
+
+def _source_digest(firmware: Path) -> str:
+    """The digest that a build of this source tree would put into its image."""
+    return str(runpy.run_path(str(firmware / "source_digest.py"))["source_digest"](firmware))
 
 
 def platformio_environment(firmware: Path) -> dict[str, str]:
