@@ -188,8 +188,9 @@ def test_a_flash_that_ends_anywhere_leaves_a_board_that_does_nothing_and_can_be_
         return ""
 
     with board(kind, bytes(4096), interrupt) as to:
-        with pytest.raises(KeyboardInterrupt):
+        with pytest.raises(KeyboardInterrupt) as caught:
             write(to, image(tmp_path, (0, PATTERN)))
+        assert caught.value.__notes__ == ["The board was not flashed whole: flash it again."]
         assert to.memory[: to.page] == b"\xff\xcf".ljust(to.page, b"\xff")
         assert not to.left
         to.spoil = spoil("", "write")

@@ -97,8 +97,8 @@ def write_image(port: str, dialect: Dialect, image: Image, size: int, report: Pr
         _write_first(port, dialect, first, image.content(first), size)
     except PortLostError:
         raise UserError(f"{port} went away while it was being flashed; connect the board and flash it again.") from None
-    except PortDisturbedError as disturbed:
-        disturbed.add_note("The board was not flashed whole: flash it again.")
+    except (PortDisturbedError, KeyboardInterrupt) as ending:
+        ending.add_note("The board was not flashed whole: flash it again.")
         raise
 
 
