@@ -69,11 +69,11 @@ def test_a_flash_that_was_interrupted_is_repeated(board: str) -> None:
 
 
 class BadCable:
-    """The line to a bench, which loses a byte of some pages on their way there, and of some on their way back."""
+    """The line to a bench, which loses bytes of some pages on their way there, and of some on their way back."""
 
-    def __init__(self, line: Line, lost: list[str], pages: list[int]) -> None:
-        """Losses and written pages are counted over all openings of the port."""
-        self.line, self.lost, self.pages = line, lost, pages
+    def __init__(self, line: Line, lost: list[str], pages: list[int], count: int) -> None:
+        """Losses and written pages are counted over all openings of the port; `count` bytes are lost at a time."""
+        self.line, self.lost, self.pages, self.count = line, lost, pages, count
         self.restarted, self.close, self.clock, self.wait = line.restarted, line.close, line.clock, line.wait
         self._reads = False
 
@@ -83,7 +83,7 @@ class BadCable:
             self.pages.append(len(data))
             if len(self.pages) in (3, 20):
                 self.lost.append("question")
-                data = data[:50] + data[51:]
+                data = data[:50] + data[50 + self.count :]
         self.line.write(data)
 
     def read(self) -> bytes:
@@ -91,13 +91,14 @@ class BadCable:
         if data and self._reads and self.lost.count("answer") < 2:
             self.lost.append("answer")
             self._reads = False
-            data = data[1:]
+            data = data[self.count :]
         return data
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("count", [1, 40])
 @pytest.mark.parametrize("board", IMAGES)
-def test_bytes_that_are_lost_both_ways_do_no_harm(board: str) -> None:
+def test_bytes_that_are_lost_both_ways_do_no_harm(board: str, count: int) -> None:
     """In the middle of a page that is written, and in one that is read."""
     image, lost, pages = read_image(IMAGES[board]).memory, list[str](), list[int]()
     with lock_step("--blank", "--board", board) as bench, pytest.MonkeyPatch.context() as patch:
@@ -105,7 +106,7 @@ def test_bytes_that_are_lost_both_ways_do_no_harm(board: str) -> None:
 
         def open_badly(restart: bool, baud: int) -> Line:
             line = start(restart, baud)
-            return line if baud == BAUD else BadCable(line, lost, pages)
+            return line if baud == BAUD else BadCable(line, lost, pages, count)
 
         patch.setitem(LINES, bench.port, open_badly)
         flash.flash(bench.port, board, hex_file=IMAGES[board])
