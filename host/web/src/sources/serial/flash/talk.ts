@@ -2,8 +2,11 @@
 
 import { SerialLine, wait } from "../line";
 
-const ASK_EVERY_MS = 50;
-const QUESTIONS = 10; // a bootloader that listens answers the first one
+const START_MS = 100; // from the reset until a bootloader listens: the start-up delay of an Arduino's fuses is 65 ms
+// A bootloader that listens answers the first question. Optiboot, of newer Nanos, looks at nothing while it flashes its LED
+// for 375 ms, and has room for one question then.
+const ASK_EVERY_MS = 400;
+const QUESTIONS = 2;
 const STILL_MS = 100; // after the last answer to a question that was asked twice
 const ANSWER_MS = 500;
 
@@ -23,6 +26,7 @@ export class Talk {
       lost: () => talk.arrived(),
     });
     await talk.line.restart();
+    await wait(START_MS);
     return talk;
   }
 
