@@ -1,4 +1,4 @@
-"""Where the searches run: in a process of their own, so that samples and lease never wait for them."""
+"""The process in which the searches run, apart from the samples: neither samples nor lease ever wait for a search."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class Background:
         self._future = self._executor.submit(_work, task)
 
     def take(self) -> Proposal | LiveModel | None:
-        """What was found, once; None before that. Raises UserError where the process of the search ended."""
+        """Hand over what was found, once; None before that. Raises UserError where the process of the search ended."""
         if self._future is None or not self._future.done():
             return None
         future, self._future = self._future, None

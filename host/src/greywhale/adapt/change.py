@@ -48,7 +48,7 @@ class RestWatch:
 
     @property
     def is_close(self) -> bool:
-        """Whether no error is so large that the arm would be left behind by a change."""
+        """True where every error is so small that a change would not leave the arm behind."""
         return bool(self.error < self._limits.close_rad)
 
 
@@ -71,7 +71,7 @@ class SetChanger:
             self._staged = next(self._staging, self._staged)
 
     def is_ready(self, table: ParameterTable) -> bool:
-        """Whether this set is staged as a whole."""
+        """True where this set is staged as a whole."""
         return self._table is not None and self._table.crc == table.crc and self._staged == len(table.raw)
 
     def change(self) -> None:

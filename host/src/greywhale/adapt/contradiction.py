@@ -1,4 +1,4 @@
-"""Whether a joint's potentiometer turns as far as the joint's voltages say, from the fit to the last stretches.
+"""Compares how far a joint's potentiometer turns with what its voltages say, from the fit to the last stretches.
 
 A reading that turns too little makes a speed and an acceleration cost more volts by the same factor, and leaves
 friction as it was. An arm that works does not change like that: a hot motor and a sagging supply make friction cost as

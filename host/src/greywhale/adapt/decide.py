@@ -132,12 +132,12 @@ class Adaptation:
 
     @property
     def on_trial(self) -> bool:
-        """Whether the board runs a set that may go back."""
+        """True where the board runs a set that may go back."""
         return self._trial is not None and self._trial.begun
 
     @property
     def activity(self) -> str:
-        """What goes on, in a clause."""
+        """The present activity, in a clause."""
         if self.on_trial:
             return "trying a set"
         return "watching, a search runs" if self._thinking else "watching"
@@ -195,8 +195,9 @@ class Adaptation:
         self.wish = Wish(table, f"{_lower(proposal.predicted)} error is predicted")
 
     def _trusts(self, live: LiveModel) -> bool:
-        """Whether the readings that a model was fitted to can be true. One fit may be wrong: it holds up whatever is
-        tried. A second one in a row is believed: no error speaks for a set then, nor did it when a set was kept.
+        """True where the readings that a model was fitted to can be true. One fit may be wrong: it holds up whatever is
+        tried. A second one in a row is believed, and ends a trial or a kept set: no error speaks for a set then, nor
+        did it when the set was kept.
         """
         before, self._suspicion = self._suspicion, live.contradiction
         if before and self._suspicion:
@@ -219,7 +220,7 @@ class Adaptation:
     # --- what goes out ------------------------------------------------------------------------------------------------
 
     def task(self) -> Task | None:
-        """What the background should do now, once; None for nothing."""
+        """Return the background's next task, once; None for nothing."""
         if self._thinking or self.wish is not None:
             return None
         limits = self._decisions
@@ -241,8 +242,8 @@ class Adaptation:
     # --- how it decides -----------------------------------------------------------------------------------------------
 
     def _explains(self, model: LiveModel) -> bool:
-        """Whether a fit shows the errors that were measured. One to stretches before and after a load was taken up fits
-        two arms, and what it says of any set may be wrong by orders of magnitude.
+        """True where a fit shows the errors that were measured. One to stretches before and after a load was taken up
+        fits two arms, and what it says of any set may be wrong by orders of magnitude.
         """
         chain = (self._own if self._trial is None else self._trial.stretches)[-self._decisions.fit_s :]
         measured = np.array([one.error for one in judged_of(chain, self._lead_s)])
@@ -326,7 +327,7 @@ class Adaptation:
             trial.expected[len(trial.expected) - count :] = by_kept[len(by_kept) - count :]
 
     def _excess(self, scale: Scale) -> float:
-        """How much more error than with the set from the start, as a share, over the last half minute."""
+        """Return the error beyond that with the set from the start, as a share, over the last half minute."""
         if not self._last_half:
             return 0.0
         seen, expected = np.array(self._last_half).sum(axis=0)
@@ -372,17 +373,17 @@ class Adaptation:
         self.wish = Wish(self.start, why, urgent=True)
 
     def _works(self) -> bool:
-        """Whether a person is at work."""
+        """True where a person is at work."""
         leader = np.concatenate([one.leader for one in self._own])
         return bool(np.ptp(leader, axis=0).max() > self._decisions.work_rad)
 
     def _is_led_up_to(self, chain: Sequence[Stretch]) -> bool:
-        """Whether enough joined stretches lie before the last one for a prediction."""
+        """True where enough joined stretches lie before the last one for a prediction."""
         return len(chain) > self._lead_s and all(one.joined for one in chain[-self._lead_s :])
 
     @property
     def _is_fresh(self) -> bool:
-        """Whether the model knows the arm as it was just now."""
+        """True where the model knows the arm as it was just now."""
         return self._age <= self._decisions.fit_valid_s
 
     def _swings_of(self, stretches: Sequence[Stretch]) -> Swings | None:

@@ -1,4 +1,4 @@
-"""What the model says that a set of controllers would have done on what the person did."""
+"""Predicts with the model the errors that a set of controllers would have made on what the person did."""
 
 from __future__ import annotations
 

@@ -24,7 +24,7 @@ T_99 = (6.965, 4.541, 3.747, 3.365, 3.143, 2.998, 2.896, 2.821, 2.764, 2.718, 2.
 
 @dataclass(frozen=True)
 class Scale:
-    """How measured errors of a set relate to the predicted ones: `factor` (4,), and `weight` (4,) 1/rad² that makes
+    """Measured errors of a set beside the predicted ones: `factor` (4,) between them, `weight` (4,) 1/rad² that makes
     every joint count the same; `usual` is a stretch's error in that unit, `deviation` that of the whole, as a share.
     """
 
@@ -49,12 +49,12 @@ class Scale:
         return float(np.abs(np.log(self.factor)).max())
 
     def expected(self, predicted: Floats) -> Floats:
-        """What would be measured, (n,) in units of the joints' usual errors."""
+        """Return the errors to expect, (n,) in units of the joints' usual errors, from predicted ones (n, 4)."""
         found: Floats = (self.factor * predicted) @ self.weight
         return found
 
     def seen(self, measured: Floats) -> Floats:
-        """The same of measured errors (n, 4)."""
+        """Return measured errors (n, 4) as (n,) in units of the joints' usual errors."""
         found: Floats = measured @ self.weight
         return found
 
@@ -80,7 +80,7 @@ class Ratio:
         return cls(value, float(deviation), groups)
 
     def within(self, more: float) -> tuple[float, float]:
-        """Where the ratio lies, each side with 99 %; `more` is a further deviation, as a share."""
+        """Return the bounds of the ratio, each side with 99 %; `more` is a further deviation, as a share."""
         if not np.isfinite(self.deviation):
             return 0.0, float("inf")
         wide = float(np.exp(T_99[min(self.groups - LEAST_GROUPS, len(T_99) - 1)] * np.hypot(self.deviation, more)))

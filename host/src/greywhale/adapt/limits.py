@@ -14,7 +14,7 @@ from greywhale.tune.limits import WITHOUT_FLOORS, TuningLimits
 
 @dataclass(frozen=True)
 class ChangeLimits:
-    """When and how the board takes another set over while a person works."""
+    """Limits of a change: the board takes another set over while a person works."""
 
     stage_every_samples: int = limit(
         4, "samples", "one parameter is staged so often: its answer takes less time than the samples between"
@@ -36,7 +36,7 @@ class ChangeLimits:
 
 @dataclass(frozen=True)
 class SampleLimits:
-    """What makes a stretch of samples, and a record of stretches."""
+    """Limits of a stretch of samples, and of a record of stretches."""
 
     max_lost_samples: int = limit(20, "samples", "a longer gap is not filled in: it ends the stretch in the making")
     hand_still_rad: float = limit(0.02, "rad", "the leader rests within this: a hand trembles")
@@ -64,7 +64,7 @@ class ModelLimits:
 
 @dataclass(frozen=True)
 class GainLimits:
-    """How a gain is told from chance."""
+    """Limits that tell a gain from chance."""
 
     lead_s: int = limit(
         4,
@@ -78,7 +78,7 @@ class GainLimits:
 
 @dataclass(frozen=True)
 class ProposalLimits:
-    """What a search in the background trains on, and compares its find by."""
+    """The motion that a search in the background trains on, and the stretches that it compares its find by."""
 
     newest_s: int = limit(
         24, "s", "the model is fitted to these, and their motion is trained on: a load may have been taken up before"
@@ -101,7 +101,7 @@ class ProposalLimits:
 
 @dataclass(frozen=True)
 class DecisionLimits:
-    """When a set is searched, tried, kept and given up."""
+    """Limits by which a set is searched, tried, kept and given up."""
 
     keep_s: int = limit(60, "s", "so much of the work is kept")
     first_search_s: int = limit(20, "s", "so much must have been seen with the running set before a search")

@@ -52,7 +52,7 @@ class LiveModel:
         return cls(arm, space, x, space.plants(x[None]), limits)
 
     def changes(self) -> dict[str, float]:
-        """What every number has become, as a multiple of what the model's file says; of a load, kg more."""
+        """Return every number as a multiple of what the model's file says; of a load, kg more."""
         more = self.x - self.space.start()
         kinds = [self.space.kind(index) for index in range(len(self.space))]
         return {
@@ -62,11 +62,11 @@ class LiveModel:
 
     @property
     def contradiction(self) -> str:
-        """Why the readings cannot be true, in a clause; "" where they can."""
+        """The reason why the readings cannot be true, in a clause; "" where they can."""
         return find_contradiction(self.changes(), self.arm.joints_in_use, self.limits.model.max_pot_error)
 
     def refit(self, stretches: Sequence[Stretch], table: ParameterTable, seed: int) -> LiveModel:
-        """The same arm after these stretches; joints that they do not move stay as they were."""
+        """Return the model fitted to these stretches; joints that they do not move stay as they were."""
         log, limits = log_of(stretches, table), self.limits.model
         prepared = prepare(log, table["filter_shift"], self.limits.tuning.identification)
         moved = np.ptp(log.follower, axis=0) > limits.moved_rad
@@ -87,7 +87,7 @@ class LiveModel:
         return replace(self, x=found, plants=np.vstack([self.space.plants(found[None]), others]))
 
     def _with_load(self, windows: WindowResidual) -> Floats:
-        """The same numbers with the load that explains the windows best."""
+        """Return the searched numbers with the load that explains the windows best."""
         place, x = self.space.names.index(LOAD.name), self.x.copy()
         x[place] = self.arm.tip.mass
         loads = Space(self.arm, (LOAD,), self.space.plants(x[None])[0])

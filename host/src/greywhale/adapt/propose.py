@@ -27,7 +27,7 @@ from greywhale.tune.model import Model
 
 @dataclass(frozen=True)
 class Task:
-    """What the background is given. `recent` ran with the controllers of `table`. A `budget` of 0: only fit the model,
+    """A task for the background. `recent` ran with the controllers of `table`. A `budget` of 0: only fit the model,
     to them all, whatever controllers they ran with.
     """
 
@@ -96,7 +96,7 @@ def _fit(task: Task) -> LiveModel:
 
 
 def _count_alike(measured: Floats, predicted: Floats, limits: AdaptationLimits) -> int:
-    """How many of the last stretches show the arm as it is now, from their errors (n, 4)."""
+    """Count the last stretches that show the arm as it is now, from their errors (n, 4)."""
     newest, step = limits.proposals.newest_s - limits.gain.lead_s, limits.proposals.block_s
     scale = Scale.of(measured[-newest:], predicted[-newest:], limits.gain)
     count = min(newest, len(measured))
@@ -110,8 +110,8 @@ def _count_alike(measured: Floats, predicted: Floats, limits: AdaptationLimits) 
 
 
 def motion_of(stretches: Sequence[Stretch], limits: ProposalLimits = ADAPTATION_LIMITS.proposals) -> Trajectory:
-    """What the person did in the longest part without a gap, from rest, and the same backwards and faster; readings'
-    noise is averaged.
+    """Return the person's motion in the longest part without a gap, from rest, followed by the motion backwards and
+    faster; readings' noise is averaged.
     """
     chain = max(chains_of(stretches), key=len)[-limits.newest_s :]
     leader, every = traces_of(chain).leader, limits.row_every_ticks

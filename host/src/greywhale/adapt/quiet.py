@@ -1,4 +1,4 @@
-"""Whether a set on trial swings more than the one from before. The limits are those of a commissioning
+"""Finds where a set on trial swings more than the one from before. The limits are those of a commissioning
 (`measure/limits.py`).
 
 A hand trembles, and a good follower follows that: only what it does beyond its leader counts as unrest.

@@ -92,7 +92,7 @@ class AdaptationResult:
 
 
 def say(tried: TriedSet) -> str:
-    """What came of a trial, in a clause."""
+    """Say how a trial ended, in a clause."""
     if tried.outcome is Outcome.KEPT:
         return (
             f"a set was kept: {tried.why} ({100 * (1 - tried.predicted):.0f} % less predicted, {tried.seconds:.0f} s)"

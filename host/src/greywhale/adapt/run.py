@@ -234,7 +234,7 @@ class _Pause:
         return not self._over
 
     def is_too_long(self, one: Received) -> bool:
-        """Whether the motors are off although nobody asked for that, or for longer than a change takes."""
+        """True where the motors are off although nobody asked for that, or for longer than a change takes."""
         return one.sample.state is not schema.State.FOLLOWING and (self._over or one.elapsed > self._most)
 
 

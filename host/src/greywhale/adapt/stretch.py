@@ -47,7 +47,7 @@ def traces_of(chain: Sequence[Stretch]) -> Traces:
 
 
 def chains_of(stretches: Sequence[Stretch]) -> list[list[Stretch]]:
-    """The same stretches in groups between which something is missing."""
+    """Group the stretches: between two groups something is missing."""
     chains: list[list[Stretch]] = []
     for one in stretches:
         if one.joined and chains:

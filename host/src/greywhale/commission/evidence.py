@@ -1,4 +1,4 @@
-"""What earlier trials tell a later round: logs with other controllers, and plants that show what the arm did."""
+"""Evidence of earlier trials for a later round: logs with other controllers, and plants that show what the arm did."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a round's model says about steps, which no check can have: a host leads slower than a leader can be thrown.
+"""Predicts errors on steps by a round's model. No check has any: a host leads slower than a leader can be thrown.
 
 The model predicts how a controller's error on steps compares with that of the controller from before. On arms of
 another engine these ratios came out within 0.015, and near 1 within 0.007, of what the arm then did. So a joint that
@@ -34,7 +34,7 @@ LEAST = 1e-12  # rad², the error of a joint that is not in use
 
 @dataclass(frozen=True)
 class Foresight:
-    """What a model says of the controllers from before on steps; `believed` (4,) marks the joints it knows."""
+    """Errors of the controllers from before on steps, by a model; `believed` (4,) marks the joints that it knows."""
 
     experiment: Experiment
     plant: Floats
@@ -49,8 +49,8 @@ class Foresight:
         return found
 
     def estimate(self, rows: Controllers, worse: Floats) -> tuple[Floats, Floats]:
-        """The same (n, 4) of many (n, 4, 13), in single precision, and the most unrest (2, n, 4) between two steps, rad
-        rms, on the model and on a `worse` arm (1, columns).
+        """Return the ratios (n, 4) of many controllers (n, 4, 13), in single precision, and the most unrest (2, n, 4)
+        between two steps, rad rms, on the model and on a `worse` arm (1, columns).
         """
         known, other = (self.experiment.run(rows, plant, every=1) for plant in (self.plant, worse))
         restless = [
@@ -72,7 +72,7 @@ class Foresight:
         )
 
     def _is_better_than_before(self, rows: Controllers, joint: int, ratio: float) -> bool:
-        """Whether the joint's own controller from before would do worse beside these neighbours."""
+        """True where the joint's own controller from before would do worse beside these neighbours."""
         reverted = rows.copy()
         reverted[joint] = self.before[joint]
         return ratio < float(self.ratios(reverted)[joint])
@@ -86,8 +86,8 @@ def foresee(
     measured: Measures,
     judging: CommissioningLimits = COMMISSIONING_LIMITS,
 ) -> Foresight:
-    """What a model of this arm foresees; `traces` and `measured` are those of the check before, with `table`. The steps
-    go wherever the board's limits let the arm go: after the commissioning a hand will.
+    """Make a model of this arm ready to predict steps; `traces` and `measured` are those of the check before, with
+    `table`. The steps go wherever the board's limits let the arm go: after the commissioning a hand will.
     """
     moves = PARTS.index("moves")
     predicted = measure(predict(arm, table, traces)[0], check, table.supply_v).error[moves]

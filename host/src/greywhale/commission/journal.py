@@ -18,7 +18,7 @@ NAME = "commission.journal"
 
 
 class AnewError(UserError):
-    """What the same command would meet again: `--resume` does not help."""
+    """An error that the same command would meet again: `--resume` does not help."""
 
 
 class CommissioningJournal(Closing):

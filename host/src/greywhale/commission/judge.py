@@ -28,7 +28,7 @@ RESTLESS = ("unrest", "rattle", "chatter", "ripple")
 
 @dataclass(frozen=True)
 class Limits:
-    """What a joint may do at most in each part of the check, (parts, 4) each.
+    """The most that a joint may do in each part of the check, (parts, 4) each.
 
     Each part has limits of its own: a joint that its neighbours push while it holds still may show several mrad there,
     and must rest after its own moves all the same.
@@ -48,7 +48,7 @@ class Limits:
         quiet_v: float,
         judging: CommissioningLimits = COMMISSIONING_LIMITS,
     ) -> Limits:
-        """What was there before is never too much, nor is ripple of `quiet_v`. `kept` (4,) marks joints whose
+        """Allow whatever was there before, and ripple of `quiet_v`. `kept` (4,) marks joints whose
         controllers are those from before: they are no worse controllers, so what nobody sees never counts against
         them.
         """
@@ -88,7 +88,7 @@ class TrialVerdict:
 
     @property
     def hunts(self) -> bool:
-        """Whether it does not come to rest, or rattles."""
+        """True where the joint does not come to rest, or rattles."""
         return self.restless and not self.chatters_only
 
     @property
@@ -97,7 +97,7 @@ class TrialVerdict:
 
     @property
     def ranking_cost(self) -> float:
-        """What joints and sets are chosen by, less is better: the score, and dearer with what has to be borne."""
+        """The cost that joints and sets are chosen by, less is better: the score, dearer with what has to be borne."""
         if not self.passes_at_a_price:
             return float("inf")
         above = 0.0 if self.passed else (self.excess - 1.0) / (self.judging.swings.bearable_excess - 1.0)

@@ -121,7 +121,7 @@ class RoundTuner:
         )
 
     def _with_failures(self, model: Model) -> Model:
-        """The same model with plants that show what the arm did, where the search and the margins see them."""
+        """Return the model with plants added that show what the arm did, where the search and the margins see them."""
         plants = self.failing(model.arm)
         return replace(model, plants=np.vstack([model.plants[:1], plants, model.plants[1:]])) if len(plants) else model
 

@@ -44,7 +44,7 @@ class MotionLimits:
 
 @dataclass(frozen=True)
 class RoundLimits:
-    """When a round, or its trials, end."""
+    """Limits at which a round, or its trials, end."""
 
     max_error_share: float = limit(
         0.5, "of the error before", "another round follows while a joint's best is above this"
@@ -67,7 +67,7 @@ class RoundLimits:
 
 @dataclass(frozen=True)
 class EvidenceLimits:
-    """What earlier trials tell a later round."""
+    """Limits of the evidence that earlier trials give a later round."""
 
     fitted_trials: int = limit(2, "trials", "so many logs of trials are fitted, besides the excitation")
     gaps_rad: tuple[float, ...] = limit(
@@ -83,7 +83,7 @@ class EvidenceLimits:
 
 @dataclass(frozen=True)
 class StepLimits:
-    """What a round's model says about steps, which no check can have."""
+    """Limits of a round's model on steps, which no check can have."""
 
     max_error_share: float = limit(
         0.99,
@@ -98,7 +98,7 @@ class StepLimits:
 
 @dataclass(frozen=True)
 class JudgeLimits:
-    """What a joint may do in a trial; how much it may swing is in `measure/limits.py`."""
+    """Limits of a joint in a trial; those of its swings are in `measure/limits.py`."""
 
     bearable_price: float = limit(
         2.0,
@@ -141,7 +141,7 @@ class JudgeLimits:
 
 @dataclass(frozen=True)
 class SearchLimits:
-    """What a set of controllers may show on the round's model, before the arm moves."""
+    """Limits of a set of controllers on the round's model, before the arm moves."""
 
     packs: tuple[tuple[float, int], ...] = limit(
         ((0.05, 96), (0.05, 64), (0.03, 64), (0.02, 64)),

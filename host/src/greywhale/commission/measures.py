@@ -1,4 +1,4 @@
-"""What a log of the check says about every joint: error, unrest and ripple at rest, rattling, chatter, voltage.
+"""Measures of every joint in a log of the check: error, unrest and ripple at rest, rattling, chatter, voltage.
 
 - error: mean of (leader - follower)², rad²; in the part "holding still" only while the joint's own leader rests.
 - unrest, rattle, chatter, ripple: see `measure/swings.py`; rattle only while a hand leads, ripple at rest after
@@ -65,7 +65,7 @@ class Measures:
 
     @property
     def whole(self) -> bool:
-        """Whether the check was played to its end."""
+        """True where the check was played to its end."""
         return bool(np.isfinite(self.error).all())
 
     def worst(self, name: str) -> Floats:

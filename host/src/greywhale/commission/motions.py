@@ -25,7 +25,7 @@ PARTS = ("small moves", "moves", "reaches", "slow motion", "holding still")
 
 @dataclass(frozen=True)
 class JointRange:
-    """Where the arm is, and how far each joint may go: `pose`, `low` and `high` (4,) in rad."""
+    """The arm's place and the room of each joint: `pose`, `low` and `high` (4,) in rad."""
 
     pose: Floats
     low: Floats

@@ -1,4 +1,4 @@
-"""What a commissioning is asked: a port, an arm, and how much effort to spend."""
+"""The request for a commissioning: a port, an arm, and how much effort to spend."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class CommissioningRequest:
     judging: CommissioningLimits = COMMISSIONING_LIMITS
 
     def facts(self) -> dict[str, Any]:
-        """What a journal must agree with."""
+        """Return the facts that a journal must agree with."""
         others = changed(self.judging, COMMISSIONING_LIMITS)
         return {
             "arm": self.arm_file,

@@ -52,7 +52,7 @@ class Round:
 
 
 def predict_trial(arm: ArmParameters, trial: Trial, check: Check) -> Measures:
-    """What a model says about a trial."""
+    """Predict the measures of a trial with a model."""
     return measure(predict(arm, trial.table, trial.traces)[0], check, trial.table.supply_v)
 
 
@@ -68,7 +68,7 @@ def errors_beside(predicted: Measures, trial: Trial) -> str:
 
 @dataclass(frozen=True)
 class CommissioningResult:
-    """What was tried, and the set `best` that the board runs and stores now."""
+    """All trials of a commissioning, and the set `best` that the board runs and stores now."""
 
     trials: Trials
     rounds: tuple[Round, ...]
@@ -80,7 +80,7 @@ class CommissioningResult:
         return self.best is not self.trials.before
 
     def predicted(self, trial: Trial, round_: Round) -> Measures:
-        """What a round's model says about a trial; asked once, and told to all."""
+        """Predict the measures of a trial with a round's model; asked once, and told to all."""
         key = trial.name, round_.number
         if key not in self._predicted:
             self._predicted[key] = predict_trial(round_.learnt.arm, trial, self.trials.check)
@@ -112,7 +112,7 @@ class CommissioningResult:
 
     @property
     def headline(self) -> str:
-        """Which set the board runs now, and which joints kept their controllers."""
+        """A sentence that names the set that the board runs now, and the joints that kept their controllers."""
         if not self.improved:
             return "No set passed on every joint: the controllers from before stay on the board."
         kept = [f"joint {joint} ({JOINT_NAMES[joint]})" for joint in self._kept]
@@ -126,7 +126,7 @@ class CommissioningResult:
         return [joint for joint in self.trials.table.joints_in_use if same[joint]]
 
     def text(self) -> str:
-        """What changed on the arm, joint by joint, for people."""
+        """Tell people what changed on the arm, joint by joint."""
         before, after = self.trials.before.measured, self.best.measured
         played = len(self.trials.done) - 1
         lines = [

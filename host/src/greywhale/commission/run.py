@@ -47,8 +47,8 @@ DESIGN_BUDGET = 150  # the last evaluations of a search for a motion would gain 
 
 
 def is_enough(hoped: Sequence[float], limits: RoundLimits = COMMISSIONING_LIMITS.rounds) -> bool:
-    """Whether a round's trials end here; `hoped` is the error of the joints' best together after each of them, relative
-    to before.
+    """True where a round's trials end here; `hoped` is the error of the joints' best together after each of them,
+    relative to before.
     """
     patience = limits.trials_without_gain
     stalls = len(hoped) > patience and hoped[-1] > (1.0 - limits.min_gain) * hoped[-1 - patience]
@@ -181,7 +181,7 @@ class _Commissioning:
         )
 
     def _finish(self, tuner: learn.RoundTuner, tuned: learn.UnvalidatedTuning | None) -> learn.LearntController:
-        """What a round learnt, with controllers that its model prefers on the check."""
+        """Return what a round learnt, with controllers that its model prefers on the check."""
         trials = self.trials
         model, learnt = tuner.validate(tuned, to_validate(trials))
         before = trials.before
@@ -260,7 +260,7 @@ class _Commissioning:
         return rows
 
     def _needs_another_round(self) -> bool:
-        """Whether another round may help: a joint follows little better than before."""
+        """True where another round may help: a joint follows little better than before."""
         return any(one.best.verdict.ranking_cost > self.options.judging.rounds.max_error_share for one in self.joints)
 
     def _report(self, what: str, fraction: float, note: str = "") -> None:

@@ -47,7 +47,7 @@ KI, KU, CE_TICKS = (CONTROLLER_COLUMNS.index(name) for name in ("ki", "ku_mv", "
 
 @dataclass(frozen=True)
 class CheckOnModel:
-    """What a model says about controllers, as costs of each joint."""
+    """The check, played on a model: it gives the costs of controllers, joint by joint."""
 
     arm: LedModel
     plants: Floats  # (2, columns): the model, and a worse arm
@@ -98,7 +98,7 @@ class CheckOnModel:
         return self.trials.judging.search
 
     def corrected(self, trial: Trial) -> CheckOnModel:
-        """The same after a trial: what was too much on the arm, the model may show less of, by the same ratio."""
+        """Return the check with lower aims: the model may show less of what a trial had too much of, by that ratio."""
         (known,) = self._measured(trial.rows[None], 0)
         aims: dict[str, Floats] = {}
         surer, least = self.wanted.correction_share, self.wanted.least_aim
@@ -133,7 +133,7 @@ class CheckOnModel:
         return errors, prices
 
     def _measured(self, controllers: Controllers, plant: int, *, only_unrest: bool = False) -> Iterator[Measures]:
-        """What each of controllers (n, 4, 13) would show in the check on one of the plants."""
+        """Measure controllers (n, 4, 13), one after another, in the check on one of the plants."""
         for traces in self.arm.run(controllers, self.plants[plant : plant + 1]):
             yield measure(traces, self.trials.check, self.trials.table.supply_v, only_unrest=only_unrest)
 

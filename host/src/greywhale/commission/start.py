@@ -45,7 +45,7 @@ def refuse_stuck(
 
 
 def shares_moved(log: Log) -> Floats:
-    """How far each follower went, as a share of its leader's way; below 0 the other way. (4,)"""
+    """Return how far each follower went, as a share of its leader's way; below 0 the other way. (4,)"""
     shares = np.zeros(JOINTS)
     for joint in range(JOINTS):
         leader, follower = log.leader[:, joint], log.follower[:, joint]

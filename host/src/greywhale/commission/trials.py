@@ -56,12 +56,12 @@ class Trial:
 
     @property
     def passed(self) -> bool:
-        """Whether all joints did, with each other."""
+        """True where all joints passed, with each other."""
         return all(verdict.passed for verdict in self.verdicts)
 
     @property
     def passes_at_a_price(self) -> bool:
-        """Whether all joints passed, or are a little restless and have no other fault."""
+        """True where all joints passed, or are a little restless and have no other fault."""
         return all(verdict.passes_at_a_price for verdict in self.verdicts)
 
     @property
@@ -71,7 +71,7 @@ class Trial:
 
     @property
     def ranking_cost(self) -> float:
-        """The same with what has to be borne priced; less is better."""
+        """The score, with a price on what has to be borne; less is better."""
         return sum(verdict.share * verdict.ranking_cost for verdict in self.verdicts)
 
     def as_dict(self) -> TrialFacts:

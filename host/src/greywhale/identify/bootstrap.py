@@ -1,4 +1,4 @@
-"""How uncertain a model is, from logs that it makes itself: a parametric bootstrap (Efron and Tibshirani 1993, ch. 6).
+"""The uncertainty of a model from logs that it makes itself: a parametric bootstrap (Efron and Tibshirani 1993, ch. 6).
 
 The identified arm is led by the leaders of the logs, under their controllers, with fresh noise and through the same
 converter. Each of these logs is fitted as the real one was. What the fits are off, bias included, is what the real fit
@@ -43,7 +43,7 @@ def scatter_of_fits(
     seed: int,
     report: Callable[[float], None],
 ) -> Floats:
-    """What fits of simulated logs are off the point `x` that simulated them: (fits, numbers). Ctrl-C ends it early.
+    """Return how far fits to simulated logs are off the point `x` behind them: (fits, numbers). Ctrl-C ends it early.
 
     Each fit starts elsewhere, by the formula's `covariance`: the real one did not start at the truth either.
     """
@@ -101,7 +101,7 @@ def spread_covariance(
 
 
 def _systematic(space: Space, limits: UncertaintyLimits) -> Floats:
-    """What fits are off beyond their scatter (docs/identify.md)."""
+    """Return how far fits are off beyond their scatter (docs/identify.md)."""
     kinds, alphas = dict(limits.systematic), limits.systematic_alpha
     known = [alphas[one.joint] if one.kind == "alpha" else kinds.get(one.kind, 0.0) for one in space.parameters]
     return np.array(known)
@@ -128,7 +128,7 @@ def _simulate(log: Prepared, loop: Loop, plant: Floats, zero: Floats, seed: int)
 
 
 def read_motion(shown: Floats, noise: Floats, shift: int, random: np.random.Generator) -> Floats:
-    """What the firmware makes of what potentiometers show at every tick, (ticks, 4) rad: four conversions, a filter."""
+    """Read what potentiometers show at every tick, (ticks, 4) rad, as the firmware does: four conversions, a filter."""
     from scipy.signal import lfilter  # slow to import
 
     before = np.vstack([shown[:1], shown[:-1]])

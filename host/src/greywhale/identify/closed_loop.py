@@ -73,7 +73,7 @@ class Loop:
         self.rows = len(self.follower[::COMPARED_TICKS])
 
     def with_zero(self, offsets: Floats, seed: int = SEED) -> Loop:
-        """The same experiment with potentiometers that read 0 at other angles, and with other noise."""
+        """Return the experiment with potentiometers that read 0 at other angles, and with other noise."""
         return Loop(*self._made_of, offsets, seed)
 
     def record(self, plant: Floats) -> tuple[Floats, NDArray[np.int16]]:

@@ -1,4 +1,4 @@
-"""What the logs show of numbers that they do not show one by one: quotients and products that are well determined.
+"""Quotients and products that the logs determine well, of numbers that they do not show one by one.
 
 Motion in which gravity plays no part shows inertia per torque, for example, but neither alone. The estimate then lies
 somewhere on a ridge, and the standard deviations of its numbers say little. The quotient's says much.

@@ -44,7 +44,7 @@ class Prepared:
 
     @property
     def shown(self) -> NDArray[np.bool_]:
-        """Whether the log shows how voltages move a joint, (4,)."""
+        """True for each joint whose motion under its voltages the log shows, (4,)."""
         return self.moving & ~np.isin(np.arange(JOINTS), self.undriven)
 
 
@@ -114,7 +114,7 @@ def pot_noise(log: Prepared, filter_shift: int, supply: float) -> Floats:
 
 
 def rows_in(runs: Sequence[Run], count: int) -> NDArray[np.bool_]:
-    """Which of `count` rows lie in one of the runs."""
+    """True for each of `count` rows that lies in one of the runs."""
     used = np.zeros(count, dtype=bool)
     for run in runs:
         used[run.slice] = True
@@ -178,7 +178,7 @@ def _evenly(numbers: NDArray[np.intp], count: int) -> NDArray[np.intp]:
 
 
 def _is_lively(prepared: Prepared) -> NDArray[np.bool_]:
-    """Whether any joint moves in a window, (windows,)."""
+    """True for each window in which any joint moves, (windows,)."""
     rows = _rows_of_window(prepared)
     angles, lively = prepared.log.follower, prepared.limits.data.lively_rad
     found = [float(np.ptp(angles[first : first + rows], axis=0).max()) > lively for first in first_rows(prepared)]

@@ -1,4 +1,4 @@
-"""What every method of identification returns: a model, and how certain it is."""
+"""The result of every method of identification: a model, and how certain it is."""
 
 from __future__ import annotations
 

@@ -80,7 +80,7 @@ class Following:
 
     @property
     def unexplained(self) -> tuple[float, ...]:
-        """What the model leaves of each joint's tracking error, as a share of it."""
+        """Each joint's tracking error that the model leaves unexplained, as a share of that error."""
         return tuple(left / max(whole, TINY) for left, whole in zip(self.model, self.error, strict=True))
 
     def as_dict(self) -> FollowingFacts:
@@ -121,24 +121,24 @@ class LogVerdict:
 
     @property
     def is_worse(self) -> bool:
-        """Whether the model is further from the log than the white box is, by more than chance excuses."""
+        """True where the model is further from the log than the white box is, by more than chance excuses."""
         return self.excess > self._excused
 
     @property
     def is_as_good(self) -> bool:
-        """Whether chance explains which of both is nearer to the log, of a model that is certain enough."""
+        """True where chance explains which of both is nearer to the log, of a model that is certain enough."""
         return abs(self.excess) <= self._excused and not self.is_undecided
 
     @property
     def is_undecided(self) -> bool:
-        """Whether the model is so uncertain that the log decides nothing: the fit allows models that are further off
+        """True where the model is so uncertain that the log decides nothing: the fit allows models that are further off
         than it, by more than the whole error of the white box.
         """
         return self.chance > self._most_excused
 
     @property
     def comparison(self) -> str:
-        """How the model does beside the white box, such as "3.1 % better" or "24 times worse"."""
+        """The model beside the white box, in words such as "3.1 % better" or "24 times worse"."""
         before, after = sum(self.white_box), sum(self.model)
         if before > 0.0 and 2.0 * before <= after:
             return f"{after / before:.3g} times worse"
@@ -215,7 +215,7 @@ def _worse_by_chance(estimate: float, draws: Floats, sure_share: float) -> float
 
 
 def _unresolved(arm: ArmParameters) -> Floats:
-    """What a converter's steps hide, rad² (4,): even the true arm is off its own log by so much."""
+    """Return the error that a converter's steps hide, rad² (4,): even the true arm is off its own log by so much."""
     steps = np.array([pot.track for pot in arm.follower_pots.joint]) / COUNTS
     return steps**2 / 12.0
 

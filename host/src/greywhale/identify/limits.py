@@ -35,7 +35,7 @@ class DataLimits:
 
 @dataclass(frozen=True)
 class CheckLimits:
-    """What makes a log useless."""
+    """Limits beyond which a log is useless."""
 
     shortest_s: float = limit(4.0, "s", "less of a log shows too little")
     farthest_s: float = limit(0.1, "s", "rows further apart do not show how an arm moves")
@@ -59,7 +59,7 @@ class CheckLimits:
 
 @dataclass(frozen=True)
 class WindowLimits:
-    """How a model is compared with a window, or with the closed loop."""
+    """Limits for the comparison of a model with a window, or with the closed loop."""
 
     speed_doubt_rad_s: float = limit(
         0.05, "rad/s", "a start speed may be off by this beyond what noise explains: motion within the smoothing"
@@ -79,7 +79,7 @@ class WindowLimits:
 
 @dataclass(frozen=True)
 class SearchLimits:
-    """What a search takes for better."""
+    """Limits by which a search takes a model for better."""
 
     min_improvement: float = limit(
         0.01, "of 1 + squares over noise", "an order with more quantities must predict the held-out data better by this"
@@ -104,7 +104,7 @@ class SearchLimits:
 
 @dataclass(frozen=True)
 class JudgeLimits:
-    """When a model is doubted."""
+    """Limits beyond which a model is doubted."""
 
     max_unexplained: float = limit(
         0.5,
@@ -122,7 +122,7 @@ class JudgeLimits:
 
 @dataclass(frozen=True)
 class UncertaintyLimits:
-    """What is known, and what fits are off."""
+    """Limits up to which a quantity is known, and the errors of fits beyond their scatter."""
 
     open_log: float = limit(
         0.3, "as a logarithm", "a positive quantity is left open if it is known no better than to this factor"
@@ -186,7 +186,7 @@ class UncertaintyLimits:
 
 @dataclass(frozen=True)
 class ExcitationLimits:
-    """What a designed motion may do."""
+    """Limits of a designed motion."""
 
     reach_rad: float = limit(1.0, "rad", "without a range a joint moves no farther to either side of where it is")
     margin_rad: float = limit(0.1, "rad", "this distance to a limit of the board or a stop of the arm stays free")

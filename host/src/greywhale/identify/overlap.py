@@ -38,7 +38,7 @@ def refuse_shared(
 
 
 def shares_samples(one: Log, other: Log, judging: IdentificationLimits = IDENTIFICATION_LIMITS) -> bool:
-    """Whether the logs hold the same samples, all or a good part of them, whatever their clocks say."""
+    """True where the logs hold the same samples, all or a good part of them, whatever their clocks say."""
     if one is other:
         return True
     short, long = sorted((_rows(one), _rows(other)), key=len)
@@ -82,7 +82,7 @@ def _hash_runs(rows: Floats) -> NDArray[np.uint64]:
 
 
 def _count_lively(rows: Floats, shared: NDArray[np.bool_], lively_rad: float) -> int:
-    """How many rows lie in shared stretches in which a follower's joint moves."""
+    """Count the rows that lie in shared stretches in which a follower's joint moves."""
     joints = rows.shape[1] // 3
     return sum(
         stop - start

@@ -1,4 +1,4 @@
-"""What an identification is asked: an arm to start from, and logs that were made ready."""
+"""The request for an identification: an arm to start from, and logs that were made ready."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ class IdentificationRequest:
         return [Loop(*pair, self.white_box) for pair in known] if len(known) == len(self.fitted) else []
 
     def required_loops(self) -> list[Loop]:
-        """The same, for a method that needs them."""
+        """Return the closed loops, for a method that needs them. Raises UserError where there are none."""
         loops = self.loops()
         if not loops:
             raise UserError(

@@ -98,7 +98,7 @@ class IdentificationResult:
 
     @property
     def complete(self) -> bool:
-        """Whether nobody interrupted the search."""
+        """True where nobody interrupted the search."""
         return self.found.complete
 
     @property
@@ -180,7 +180,7 @@ class IdentificationResult:
 
     @property
     def begun(self) -> str:
-        """What to call the arm that the search began with: only one that nobody identified is a white box."""
+        """The name of the arm that the search began with: only one that nobody identified is a white box."""
         return "white box" if self.white_box.identification is None else "model before"
 
     def text(self) -> str:

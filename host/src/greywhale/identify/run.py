@@ -69,7 +69,7 @@ def identify(
 def validated(
     outcome: IdentificationResult, validate: Sequence[Log], tables: Sequence[ParameterTable]
 ) -> IdentificationResult:
-    """The same model, judged also on logs that came after it was found; `tables` as for `identify`, for these logs."""
+    """Judge the model also on logs that came after it was found; `tables` as for `identify`, for these logs."""
     logs, judging = [subject.log.log for subject in outcome.subjects], outcome.subjects[0].log.limits
     refuse_shared(logs, validate, judging)
     known = [subject.table for subject in outcome.subjects if subject.table is not None]
@@ -110,7 +110,7 @@ def _find(task: IdentificationRequest, method: str) -> FoundModel:
 
 
 def _remarks(*logs: Sequence[Log]) -> list[str]:
-    """What the model should say about the condition of its logs."""
+    """Return the remarks that the model should carry about the condition of its logs."""
     return [remark for some in logs for log in some for remark in log.remarks]
 
 

@@ -179,7 +179,7 @@ class Search:
         return any(set(one.space.names) == set(candidate.space.names) for one in self.tried)
 
     def _is_hopeful(self, candidate: Candidate, before: Candidate) -> bool:
-        """Whether a few steps on half of the windows already predict the held-out part as well as the model before."""
+        """True where a few steps on half of the windows predict the held-out part as well as the model before does."""
         assert before.held_out is not None
         few = WindowResidual(self.logs, self.arm, self.joints, False, 2)
         few.settle(before.plant, before.zero)
@@ -188,7 +188,7 @@ class Search:
         )
 
     def _may_follow(self, order: str) -> bool:
-        """Whether the best model lacks this order. Without Coulomb friction there is no friction at rest."""
+        """True where the best model lacks this order. Without Coulomb friction there is no friction at rest."""
         best = self.best
         assert best is not None
         kinds = best.kinds
@@ -247,7 +247,7 @@ class Search:
         return self._mix_by_block(space, fits, errors[:, list(self.joints)])
 
     def _mix_by_block(self, space: Space, fits: Sequence[Floats], errors: Floats) -> Floats:
-        """The same, by errors (fits, moving joints)."""
+        """Return the numbers of the best fit for each group of coupled joints, by errors (fits, moving joints)."""
         mixed = fits[0].copy()
         for joints in COUPLED:
             mine = [place for place, joint in enumerate(self.joints) if joint in joints]
@@ -257,7 +257,7 @@ class Search:
         return mixed
 
     def _extend(self, candidate: Candidate, order: str) -> Candidate:
-        """The same model with the quantities of another order at their usual start."""
+        """Return the model with the quantities of another order added, at their usual start."""
         space = Space.of(self.arm, (*candidate.kinds, *ORDERS[order]), self.joints)
         name = order if candidate.order in ("motors", "Coulomb friction") else f"{candidate.order}, {order}"
         return Candidate(space, space.translate(candidate.x, candidate.space), name)
@@ -361,7 +361,7 @@ class Search:
 
 
 def _with_values(candidate: Candidate, values: Mapping[str, float]) -> Candidate:
-    """The same model with some kinds of quantities at other values, on every joint."""
+    """Return the model with some kinds of quantities at other values, on every joint."""
     x = candidate.x.copy()
     for index, one in enumerate(candidate.space.parameters):
         if one.kind in values:

@@ -1,4 +1,4 @@
-"""What is searched, per joint: the combinations of motor data that motion can show, friction, backlash, zero angle.
+"""The searched numbers, per joint: combinations of motor data that motion can show, friction, backlash, zero angle.
 
 A joint's five motor values act through three numbers only: the volts that a torque needs (alpha), an acceleration needs
 (inertia) and a speed needs (damping). They are positive and of unknown size, so their logarithms are searched.
@@ -133,7 +133,7 @@ class Space:
         return np.array([self.kind(index).step for index in range(len(self))])
 
     def doubts(self) -> Floats:
-        """How far a value may be from the user's arm: standard deviations of the searched numbers."""
+        """Return the standard deviations of the searched numbers: how far a value may be from the user's arm."""
         return np.array([self.kind(index).doubt for index in range(len(self))])
 
     def start(self) -> Floats:
@@ -171,7 +171,7 @@ class Space:
         return tuple(np.array(group, dtype=np.intp) for group in columns)
 
     def moves(self, joint_of: NDArray[np.intp]) -> NDArray[np.bool_]:
-        """Which searched numbers change the numbers of a residual that are of these joints; (numbers, searched)."""
+        """True for each searched number that changes numbers of a residual of these joints; (numbers, searched)."""
         table = np.zeros((JOINTS + 1, len(self)), dtype=bool)
         table[:, [index for index, one in enumerate(self.parameters) if one.joint == WHOLE_ARM]] = True
         for joints in COUPLED:

@@ -1,4 +1,4 @@
-"""How well the logs determine each parameter, what they leave open, and which motion would settle that.
+"""The uncertainty of each parameter, the numbers that the logs leave open, and the motion that would settle them.
 
 The covariance comes from the sandwich formula with the windows as clusters. A model's mistakes last for many readings
 in a row. If each reading counted as new evidence, every deviation would be far too small.
@@ -56,7 +56,7 @@ class Uncertainty:
         return np.sqrt(np.diag(self.covariance))
 
     def widened(self, covariance: Floats, space: Space, x: Floats, joints: Sequence[int]) -> Uncertainty:
-        """The same with another covariance."""
+        """Return the uncertainty with another covariance."""
         found = tuple(_describe_open(space, x, np.sqrt(np.diag(covariance)), joints, self.limits))
         return replace(self, covariance=covariance, open=found)
 

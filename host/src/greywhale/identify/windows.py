@@ -95,7 +95,7 @@ class WindowResidual:
         return changed
 
     def _settle_places(self, number: int, plant: Floats, zero: Floats) -> bool:
-        """The same for the joint's place in the play of its potentiometer."""
+        """Choose the joint's place in the play of its potentiometer at each window's start. True where one changed."""
         windows, log = self._pieces[number]
         sides = self._sides[number]
         known = self._places.get(number, windows.places)
@@ -201,7 +201,7 @@ class WindowResidual:
         return np.concatenate(clusters), np.concatenate(joints)
 
     def _sides_of(self, windows: Windows) -> Floats:
-        """Which teeth touch at a window's start: those that give the torque that the links take."""
+        """Return the teeth that touch at a window's start: those that give the torque that the links take."""
         sides = np.zeros_like(windows.angles)
         for row in range(len(sides)):
             q, v = list(windows.angles[row]), list(windows.velocities[row])

@@ -1,4 +1,4 @@
-"""How well the follower followed: the paper's measures, overshoot, settling time, swings."""
+"""Measures of following: the paper's measures, overshoot, settling time, swings."""
 
 from greywhale.measure.evaluate import Evaluation, JointMeasures, evaluate, more_overshoot
 

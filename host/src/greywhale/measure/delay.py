@@ -103,7 +103,7 @@ def onset_delay(leader: Floats, follower: Floats, step: Departure, rest_samples:
 
 
 def _crossing(value: Floats, level: float) -> float | None:
-    """Where `value` first rises above `level`, in samples, interpolated."""
+    """Return the place where `value` first rises above `level`, in samples, interpolated."""
     above = np.flatnonzero(value > level)
     if not above.size:
         return None

@@ -1,4 +1,4 @@
-"""Whether a follower follows its leader at all; only a leader that moved enough can tell.
+"""Tells a follower that follows its leader from one that does not; only a leader that moved enough can tell.
 
 Where the leader moves little, friction and backlash may hold a healthy joint still, and where it moved only just now,
 a healthy joint may not have answered yet.

@@ -1,4 +1,4 @@
-"""What a joint may swing at most, by what it did before: the limits that a commissioning and an adaptation share."""
+"""Limits of a joint's swings, by what it did before, for a commissioning and an adaptation alike."""
 
 from __future__ import annotations
 
@@ -36,13 +36,13 @@ class SwingBounds:
 
     @property
     def search_cycle(self) -> Hunting:
-        """What a search already pays for."""
+        """The hunting that a search already pays for."""
         return Hunting(self.search_cycle_rad, self.search_cycle_turns)
 
 
 @dataclass(frozen=True)
 class SwingLimits:
-    """How much more than before a joint may swing. `measure/swings.py` says what each kind of swinging is."""
+    """Limits of a joint's swings beside those before. `measure/swings.py` says what each kind of swinging is."""
 
     max_unrest_rad: float = limit(0.005, "rad rms", "more unrest than this anybody sees, unless it was there before")
     unseen_unrest_rad: float = limit(
@@ -83,7 +83,7 @@ SWING_BOUNDS = SWING_LIMITS.bounds
 
 @dataclass(frozen=True)
 class AllowedSwings:
-    """What each joint may swing at most, (rows, 4) each: a row is a part of a check, or a record as a whole."""
+    """The most that each joint may swing, (rows, 4) each: a row is a part of a check, or a record as a whole."""
 
     unrest: Floats  # rad rms
     rattle: Floats  # rad rms

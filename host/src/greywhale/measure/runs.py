@@ -28,17 +28,17 @@ class Run:
         return slice(self.start, self.stop)
 
     def samples(self, seconds: float) -> int:
-        """How many sampling periods `seconds` takes, rounded up."""
+        """Count the sampling periods that `seconds` takes, rounded up."""
         return periods(seconds, self.period)
 
 
 def periods(seconds: float, period: float) -> int:
-    """The same for a period; at least one, however long it is."""
+    """Count the periods (s) in `seconds`, rounded up; at least one, however long a period is."""
     return max(1, math.ceil(seconds / period - 1e-9))
 
 
 def stretches(mask: NDArray[np.bool_]) -> list[tuple[int, int]]:
-    """Where it is true: the first row of each stretch, and the first behind it."""
+    """Return the stretches where the mask is true: the first row of each, and the first behind it."""
     edges = np.flatnonzero(np.diff(np.concatenate(([False], mask, [False])).astype(np.int8)))
     return [(int(start), int(stop)) for start, stop in edges.reshape(-1, 2)]
 

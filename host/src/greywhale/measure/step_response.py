@@ -42,7 +42,7 @@ class Departure:
 
 @dataclass(frozen=True)
 class StepResponse:
-    """How the follower answered one step; it never settled where `settling_s` is None."""
+    """The follower's answer to one step; it never settled where `settling_s` is None."""
 
     overshoot_percent: float
     settling_s: float | None

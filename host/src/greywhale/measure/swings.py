@@ -82,7 +82,7 @@ def unrest(leader: Floats, follower: Floats, still_rad: float = STILL_RAD) -> Fl
 
 
 def most_unrest(leader: Floats, follower: Floats) -> Floats:
-    """The same of the worst rest: swings that one pose or one throw wakes are few among those of all rests."""
+    """Return the unrest (4,) of the worst rest (rad rms): swings that one pose or throw wakes are few among all."""
     found = _swings_at_rest(leader, follower, MEAN_S, STILL_RAD)
     return np.array([max((np.sqrt(np.mean(swing**2)) for swing in swings), default=np.nan) for swings in found])
 

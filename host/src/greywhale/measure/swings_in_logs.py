@@ -1,4 +1,4 @@
-"""Whether joints hunt in a log and in what a model makes of it: how far, how fast, and how they follow apart from that.
+"""Joints that hunt, in a log and in what a model makes of it: how far, how fast, and how they follow apart from that.
 
 Two arms that hunt alike do not swing in step: where each begins a swing is chance. So swings are compared by size and
 frequency, and the motion that is left without them is compared as it is.

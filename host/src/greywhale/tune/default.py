@@ -181,7 +181,7 @@ class DefaultMethod:
         return self.objective.costs(controllers) + restless
 
     def judge_costs(self, controllers: Controllers, exact: bool = False) -> Floats:
-        """The same cost on all plants, with other noise; `exact`: in the bench's own arithmetic."""
+        """Work out the costs (n, 4) on all plants, with other noise; `exact`: in the bench's own arithmetic."""
         costs: Floats = self.judging.costs(controllers, exact=exact)
         unrest = self.judging_margins.unrest(controllers, exact=exact)
         restless, limits = penalty(unrest, self.standard.quiet_v, self.limits), self.limits.choice
@@ -271,7 +271,7 @@ class DefaultMethod:
         return search.found.contenders(KEPT)
 
     def _disturbing(self, after: Controllers, worse: Flags, judge: Judge) -> Flags:
-        """Which joint's controller from before would serve those best that are worse, though they keep theirs (4,)."""
+        """Mark the joint whose controller from before would best serve the worse ones, though they keep theirs (4,)."""
         rows = np.repeat(after[None], len(after), axis=0)
         places = np.arange(len(after))
         rows[places, places] = self.start
@@ -326,7 +326,7 @@ def _digest(plants: Floats) -> str:
 
 
 def give_usual_noise(model: Model) -> Model:
-    """The same model, with the noise of a usual potentiometer where it states none.
+    """Return the model, with the noise of a usual potentiometer where it states none.
 
     Without noise the search would choose a Kd that magnifies the noise of a real board.
     """

@@ -1,4 +1,4 @@
-"""What every method of tuning offers and returns. The default and the paper's are two of them."""
+"""The interface and the result of every method of tuning. The default and the paper's are two of them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a controller is tuned for: an identified arm, the board's parameter table, and other arms that are as likely.
+"""The model to tune for: an identified arm, the board's parameter table, and other arms that are as likely.
 
 A model that nobody validated, or that belongs to another arm or board, is refused with the reason, unless forced.
 """

@@ -60,7 +60,7 @@ class LogFacts(_Facts):
     parameter_crc: str | None = None
 
     def verdict(self, limits: JudgeLimits) -> LogVerdict:
-        """What the identification said about this log."""
+        """Return the identification's verdict on this log."""
         pairs = self.white_box_mse_rad2, self.model_mse_rad2
         return LogVerdict(self.name, self.role, self.measure, *pairs, chance=self.chance_rad2, limits=limits)
 

@@ -1,4 +1,4 @@
-"""Whether a model still has the numbers that the identification wrote, and what to do where it has not."""
+"""Finds edits of a model after its identification, and says what to do about them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is possible in every class of training motion, between the least error and that of the controllers from before.
+"""The room in every class of training motion, from the least error to that of the controllers from before.
 
 The least error is that of the ideal controller of `judge/floor.py`, which hears of the leader as late as a board does.
 It is worked out for every plant, once for each tuning. A joint may start at its floor, or so near to it that a division
@@ -40,7 +40,7 @@ def scale_of(
 
 
 def lateness_s(table: ParameterTable) -> float:
-    """How late a board hears of its leader (s): conversions, the low-pass, and half a period until the duty changes."""
+    """Return the delay (s) of a board behind its leader: conversions, low-pass, half a period until a duty changes."""
     low_pass = ((1 << table["filter_shift"]) - 1) * TICK_S
     return CONVERSIONS_S + low_pass + 0.5e-3 * table.period_ms
 

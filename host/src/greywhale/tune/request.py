@@ -1,4 +1,4 @@
-"""What a tuning is asked: a model, and how much to search."""
+"""The request for a tuning: a model, and how much to search."""
 
 from __future__ import annotations
 

@@ -117,7 +117,7 @@ class TuningResult:
 
     @property
     def steady(self) -> bool:
-        """Whether every joint rests on the arm as it is, and wherever else it did before, but for softer teeth."""
+        """True where every joint rests on the arm as it is, and wherever else it did before, but for softer teeth."""
         resting = all(margin.holds for margin in self.margins if margin.scenario == AT_REST)
         return resting and all(margin.scenario == TEETH for margin in self.lost_margins)
 

@@ -1,4 +1,4 @@
-"""How far a voltage moves each joint of an identified arm: by these numbers the board holds back a joint that stands.
+"""The travel of each joint of an identified arm under a voltage: by it the board holds back a joint that stands.
 
 A joint that has had more voltage than holds it, for longer than it takes to move it, is held back (docs/firmware.md).
 Too low a breakaway voltage holds back a joint that only sticks; too high a one lets a joint with a frozen potentiometer

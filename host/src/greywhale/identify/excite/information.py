@@ -1,4 +1,4 @@
-"""How much a motion shows about every parameter: the Fisher information of the residual that the identification fits.
+"""The information in a motion about every parameter: the Fisher information of the residual that identification fits.
 
 The identification drives candidates by the logged voltages over windows of half a second. Each window starts where the
 log says, and angles are compared. To first order, a wrong parameter acts on a joint like a voltage (the voltage that
@@ -35,7 +35,7 @@ def information(
     parameters: Sequence[Parameter],
     judging: IdentificationLimits = IDENTIFICATION_LIMITS,
 ) -> Floats:
-    """What a follower's motion shows about `parameters`, joint by joint, (n, n) over the searched numbers.
+    """Work out what a follower's motion shows about `parameters`, joint by joint, (n, n) over the searched numbers.
 
     The motion is angles (rows, 4) rad every `row_s` seconds, on a plant (columns,).
     """

@@ -94,7 +94,7 @@ def next_best(
 
 
 def is_fair(costs: Floats, before: Floats, slack: float) -> npt.NDArray[np.bool_]:
-    """Whether no joint loses, of costs (..., 4)."""
+    """True where no joint loses, of costs (..., 4)."""
     fair: npt.NDArray[np.bool_] = np.all(costs <= slack * before, axis=-1)
     return fair
 

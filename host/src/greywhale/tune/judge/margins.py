@@ -1,4 +1,4 @@
-"""Whether a joint comes to rest, whether it still would on a slightly different arm, and whether it moves smoothly.
+"""The margins of a joint: it comes to rest, it still would on a slightly different arm, and it moves smoothly.
 
 Different means half or twice the loop gain, one more control period of delay, or softer gear teeth than the model has
 (recordings show stiffness least of all, and backlash hunts on it).
@@ -162,7 +162,7 @@ class Margins:
         return {name: _together([one[name] for one in each]) for name in each[0]}
 
     def _unrest(self, controllers: Controllers, exact: bool) -> dict[str, Unrest]:
-        """The same, simulated."""
+        """Simulate the unrest in every scenario of every candidate on every plant."""
         plants = len(self.plants)
         variants = variants_of(self.plants, self._beyond, self._judging.margins)
         prompt = self._run(self._prompt, controllers, np.concatenate(list(variants.values())), exact)
@@ -237,7 +237,7 @@ class Margins:
 def penalty(
     found: dict[str, Unrest], quiet_v: Floats, judging: TuningLimits = TUNING_LIMITS, *, strict: bool = False
 ) -> Floats:
-    """What candidates pay (n, 4), mostly for scenarios that fail; `quiet_v` (4,) is the ripple that is allowed. With
+    """Price candidates (n, 4), mostly for scenarios that fail; `quiet_v` (4,) is the ripple that is allowed. With
     `strict` a failure costs more.
     """
     limits = judging.margins
@@ -269,21 +269,21 @@ def rest_ticks(rest_s: float, judging: TuningLimits = TUNING_LIMITS) -> list[tup
 
 
 def variants_of(plants: Floats, beyond: float, limits: MarginLimits = TUNING_LIMITS.margins) -> dict[str, Floats]:
-    """The same plants in each scenario in which the arm differs, with gains further off by a factor."""
+    """Return the plants in each scenario in which the arm differs, with gains further off by a factor."""
     gains = {AT_REST: 1.0, HALF: limits.half_gain / beyond, TWICE: limits.twice_gain * beyond}
     variants = {name: with_gain(plants, gain) for name, gain in gains.items()}
     return {**variants, TEETH: with_softer_teeth(plants, limits)}
 
 
 def with_gain(plants: Floats, factor: float) -> Floats:
-    """The same plants with another torque per volt on every joint."""
+    """Return the plants with another torque per volt on every joint."""
     scaled = plants.copy()
     scaled[:, columns("torque_per_volt")] *= factor
     return scaled
 
 
 def with_softer_teeth(plants: Floats, limits: MarginLimits = TUNING_LIMITS.margins) -> Floats:
-    """The same plants with softer gear teeth that damp less; rigid gears stay rigid."""
+    """Return the plants with softer gear teeth that damp less; rigid gears stay rigid."""
     softer = plants.copy()
     softer[:, columns("stiffness")] /= limits.teeth_stiffness_divisor
     softer[:, columns("mesh_damping")] /= limits.teeth_damping_divisor

@@ -1,4 +1,4 @@
-"""What a controller must hold to be uploaded: the margins that the one from before holds, and quiet at rest.
+"""The standard for an upload: a controller holds the margins that the one from before holds, and is quiet at rest.
 
 Softer teeth are no part of it: the softest that recordings allow, made softer still, would forbid all close following.
 They cost a search something, and the report tells where they do not hold.
@@ -45,7 +45,7 @@ class Standard:
         return cls(failing, np.maximum(ripple, judging.swings.quiet_share * supply_v) / level, judging.choice)
 
     def falls_short(self, unrest: Mapping[str, Unrest], kept: Flags) -> Flags:
-        """Which joints of which candidates do: (n, 4); so do `kept`, those with the controller from before."""
+        """True where a joint of a candidate falls short, (n, 4); `kept` marks the joints that keep their controller."""
         most = np.where(kept, self.limits.shaken_ripple, self.limits.same_ripple)
         short: Flags = unrest[AT_REST].ripple.max(axis=1) > most * self.quiet_v
         for scenario, found in unrest.items():
@@ -55,7 +55,7 @@ class Standard:
         return short
 
     def joints_short(self, margins: tuple[Margin, ...], kept: Flags) -> Flags:
-        """Which joints of one controller do: (4,); so do `kept`."""
+        """True where a joint of one controller falls short, (4,); `kept` marks the joints that keep theirs."""
         short = np.zeros(JOINTS, dtype=bool)
         for margin in margins:
             joint, scenario = margin.joint, margin.scenario

@@ -33,7 +33,7 @@ class FloorLimits:
 
 @dataclass(frozen=True)
 class MarginLimits:
-    """Whether a joint comes to rest, also on a slightly different arm; and what a search pays where it does not."""
+    """Limits of a joint's rest, also on a slightly different arm; and the prices that a search pays beyond them."""
 
     settle_s: float = limit(1.0, "s", "a rest is judged from so long after a stop on")
     half_gain: float = limit(0.5, "times", "of the scenario with less loop gain", BY_DEFINITION)
@@ -71,7 +71,7 @@ class MarginLimits:
 
 @dataclass(frozen=True)
 class ChoiceLimits:
-    """Which controllers are uploaded together."""
+    """Limits of the controllers that are uploaded together."""
 
     worse_ratio: float = limit(
         1.03,

@@ -1,4 +1,4 @@
-"""When a model or a board's table is doubted, and from which voltage on the board expects a joint to move."""
+"""Limits of a model and of a board's table, and the voltage from which on the board expects a joint to move."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from greywhale.base.limits import MEASURED_IN_SEARCHES, limit
 
 @dataclass(frozen=True)
 class ModelLimits:
-    """When a model, or a board's table, is doubted; and the arm with looser gears beside the estimate."""
+    """Limits beyond which a model or a board's table is doubted; and the arm with looser gears beside the estimate."""
 
     gear_sigmas: float = limit(
         0.5, "standard deviations", "the second plant's gears are looser by so many", MEASURED_IN_SEARCHES

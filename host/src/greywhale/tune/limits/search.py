@@ -1,4 +1,4 @@
-"""What a search trains on, where it searches, and what it pays for."""
+"""Limits of a search: the motions that it trains on, the box that it searches, and the costs."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ class SpaceLimits:
 
 @dataclass(frozen=True)
 class CostLimits:
-    """What a controller's error costs, beside what is possible (`search/objective.py`)."""
+    """The cost of a controller's error, beside what is possible (`search/objective.py`)."""
 
     rms_weight: float = limit(
         6.0, "", "of the root of the mean square, which the paper measures, beside that of the mean size"

@@ -1,1 +1,1 @@
-"""What people get from a tuning: controller.toml, a summary, the paper's tables, pictures."""
+"""A tuning's results for people: controller.toml, a summary, the paper's tables, pictures."""

@@ -91,7 +91,7 @@ def ripples(outcome: TuningResult) -> list[str]:
 
 
 def _held(outcome: TuningResult) -> list[str]:
-    """Whether all margins hold, or which do not; the notes say how far a joint swings."""
+    """Say that all margins hold, or which do not; the notes say how far a joint swings."""
     if failing := failing_margins(outcome):
         return failing
     plants = outcome.margins[0].plants

@@ -30,7 +30,7 @@ class TuningJournal(Closing):
 
     @property
     def replaying(self) -> bool:
-        """Whether the next batch's costs are known already."""
+        """True where the next batch's costs are known already."""
         return self._next < len(self._told)
 
     def costs(self, stage: str, candidates: Controllers) -> Floats | None:

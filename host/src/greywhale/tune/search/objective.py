@@ -1,4 +1,4 @@
-"""What a controller costs, joint by joint, over all plants and classes of motion, with the firmware's own integers.
+"""The cost of a controller, joint by joint, over all plants and classes of motion, with the firmware's own integers.
 
 The error of a joint in a class is a length (rad), the sum of
 
@@ -58,7 +58,7 @@ def error_of(weighted: Floats, square: Floats, limits: CostLimits = TUNING_LIMIT
 
 @dataclass(frozen=True)
 class FollowingErrors:
-    """How candidates follow: (n, plants, classes, 4) each."""
+    """Errors of candidates, with their voltage, rattling and chatter: (n, plants, classes, 4) each."""
 
     error: Floats  # rad, see the head
     volts: Floats  # V, weighted mean of |u|
@@ -68,7 +68,7 @@ class FollowingErrors:
 
 @dataclass(frozen=True)
 class ErrorScale:
-    """What is possible on every plant in every class, and what was reached before: (plants, classes, 4) each, in rad.
+    """Errors that are possible on every plant in every class, beside those before: (plants, classes, 4) each, in rad.
 
     `room` is the way from the floor to the error before.
     """
@@ -78,7 +78,7 @@ class ErrorScale:
     rattle: Floats
 
     def first(self, plants: int) -> ErrorScale:
-        """The same for the first few plants only."""
+        """Return the scale of the first few plants only."""
         return ErrorScale(self.floor[:plants], self.room[:plants], self.rattle[:plants])
 
 

@@ -1,4 +1,4 @@
-"""What a search may change, as points of a box, and how a point becomes a controller that the firmware accepts.
+"""The box that a search works in, and the way from a point in it to a controller that the firmware accepts.
 
 A point is decoded to the int32 numbers of the parameter table first. So what is simulated is what will be uploaded, bit
 for bit.
@@ -71,12 +71,12 @@ class Variable:
 
     @property
     def column(self) -> int:
-        """Where it stands in a joint's row of the parameter table."""
+        """Its place in a joint's row of the parameter table."""
         return _column(self.name)
 
     @property
     def unit(self) -> int:
-        """How many raw steps one of the file's units has."""
+        """The number of raw steps in one of the file's units."""
         return _UNIT.get(self.name, SET_UNIT)
 
     @property
@@ -144,7 +144,7 @@ class Space:
         return cls(strategy, _chosen(strategy, sets, gains), base)
 
     def with_bounds(self, bounds: Bounds, period_ms: int = 1) -> Self:
-        """The same box with other bounds for some variables, which `check_bounds` must have passed."""
+        """Return the box with other bounds for some variables, which `check_bounds` must have passed."""
         most = largest_ki(period_ms)
         if "Ki" in bounds and bounds["Ki"][1] > most:
             raise BadUsage(
@@ -211,8 +211,8 @@ class Space:
         return replace(self, variables=tuple(by_name.values()), base=base)
 
     def restretch(self, controllers: Controllers) -> Controllers:
-        """The same laws (4, 13) with Kp and Kd of `base` where this space does not search them: the sets are stretched
-        instead.
+        """Return the laws (4, 13) with Kp and Kd of `base` where this space does not search them: the sets are
+        stretched instead.
         """
         rows = controllers.astype(np.float64)
         for gain, sets in (("Kp", SETS[:4]), ("Kd", SETS[4:])):
@@ -226,7 +226,7 @@ class Space:
         return np.rint(rows).astype(np.int32)
 
     def count_narrow(self, points: Floats) -> int:
-        """How many numbers of these points (n, 4, d) have a width below 0.01, which `controllers` widens."""
+        """Count the numbers of these points (n, 4, d) that have a width below 0.01, which `controllers` widens."""
         count = 0
         for place, variable in enumerate(self.variables):
             if variable.name in SETS and not variable.logarithmic:

@@ -162,7 +162,7 @@ def slow_following(low: Floats, high: Floats, limits: TrainingLimits = TUNING_LI
 
 
 def centre(low: Floats, high: Floats, limits: TrainingLimits = TUNING_LIMITS.training) -> tuple[Floats, Floats]:
-    """Where a joint rests and how far it goes to either side: 0 and 1 rad where the range has room for that."""
+    """Return where a joint rests and how far it goes to either side: 0 and 1 rad where the range has room for that."""
     size = np.minimum(limits.reach_rad, 0.5 * (high - low))
     return np.clip(0.0, low + size, high - size), size
 
@@ -189,13 +189,13 @@ def time_since_move(motion: Trajectory, wait_s: float, limits: TrainingLimits = 
 def moving_ticks(
     motion: Trajectory, wait_s: float, limits: TrainingLimits = TUNING_LIMITS.training
 ) -> tuple[Floats, NDArray[np.bool_]]:
-    """When every tick of an Experiment that waits `wait_s` is (s), and whether the leader then moves."""
+    """Return the time (s) of every tick of an Experiment that waits `wait_s`, and whether the leader then moves."""
     time_s = tick_times(motion, wait_s)
     change = np.abs(motion.at(time_s) - motion.at(time_s - limits.moving_s)).max(axis=1)
     return time_s, change > limits.moving_rad
 
 
 def tick_times(motion: Trajectory, wait_s: float) -> Floats:
-    """When every tick of an Experiment that waits `wait_s` is, s; below 0 while it waits."""
+    """Return the time (s) of every tick of an Experiment that waits `wait_s`; below 0 while it waits."""
     ticks = int(np.ceil((wait_s + motion.duration_s) / 1e-3 - 1e-9))
     return np.arange(ticks, dtype=np.float64) * 1e-3 - wait_s
