@@ -15,7 +15,7 @@ from tests.firmware.conftest import apply, enable, ms_until_off
 FLIPS = 26
 LOOK_MS = 4.0  # at one joint after each tick
 JUMPS = (schema.Fault.SPEED, schema.Fault.LEADER_JUMP, schema.Fault.TRACKING, schema.Fault.RUNAWAY)  # an angle may jump
-ROUND_MS = 54.0  # the checked memory, eight bytes after each tick, part by part; a flip behind the eye waits for the next round
+ROUND_MS = 54.0  # all checked memory, eight bytes after each tick; a flip behind the eye waits for the next round
 SOFT_START = ("soft_start_ms", schema.DEFAULTS[schema.PARAMETER_BY_NAME["soft_start_ms"].index])
 LIMITS = ("enable_limit", "tracking_limit", "tracking_ms", "soft_start_ms")
 JOINT_SIZE, POT_SIZE, LIMITS_AT = 28, 8, 22
