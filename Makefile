@@ -110,7 +110,7 @@ cppcheck-firmware: $(READY)
 	$(CPPCHECK) --std=c++14 '-DISR(vector,...)=void vector()' firmware/lib firmware/src
 
 cppcheck-host: $(READY)
-	$(CPPCHECK) -i sim/bootloaders --std=c++17 --suppress=assignBoolToPointer:sim/board/binding.cpp sim host/native
+	$(CPPCHECK) -i sim/bootloaders --std=c++17 --suppress=assignBoolToPointer:sim/bind/board.cpp sim host/native
 
 clang-tidy: $(TIDY)
 
@@ -161,4 +161,4 @@ hooks: setup ## let git run `make lint` before each commit (pre-commit uninstall
 	pre-commit install
 
 clean: ## remove everything that was built; .venv stays
-	rm -rf build firmware/.pio host/src/greywhale/_native.pyi sim/bench/greywhale_sim/_board.pyi
+	rm -rf build firmware/.pio host/src/greywhale/_native.pyi

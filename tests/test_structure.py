@@ -36,8 +36,8 @@ TWINS = {
 }
 # A docstring says what a thing is or does; one that begins with such a word describes it from outside, as a question.
 QUESTIONS = re.compile(r"(What|Whether|How|Where|Which|Who|Whose|When|Why|The same)\b")
-# Extension modules whose names begin with an underscore. Both are rooms of their own with public classes and functions.
-EXTENSIONS = {"_native", "_board"}
+# The extension module, whose name begins with an underscore. It is a room of its own with public classes and functions.
+EXTENSIONS = {"_native"}
 
 
 def modules(source: Path) -> dict[str, Path]:

@@ -110,7 +110,7 @@ void Adc::on_done(uint64_t when) {
   ++conversions_;
   end_ = 0;
   if (!result_locked_) {
-    const unsigned result = (mcu_.data[reg::ADMUX] & ADLAR) ? held_ << 6u : held_;
+    const unsigned result = (mcu_.data[reg::ADMUX] & ADLAR) ? unsigned{held_} << 6u : held_;
     mcu_.data[reg::ADCL] = static_cast<uint8_t>(result);
     mcu_.data[reg::ADCH] = static_cast<uint8_t>(result >> 8);
   }

@@ -61,7 +61,7 @@ void Board::write_program(const std::vector<Segment>& segments, const std::strin
   }
   for (const Segment& segment : segments)
     if (segment.address < flash_size)
-      std::copy(segment.bytes.begin(), segment.bytes.end(), mcu_.flash.begin() + segment.address);
+      std::copy(segment.bytes.begin(), segment.bytes.end(), mcu_.flash.data() + segment.address);
   cpu_.flash_changed(0, flash_size);
   eeprom_.set_content(eeprom);
   if (!bootloader) return;
@@ -246,7 +246,7 @@ std::string Board::peek(uint32_t address, uint32_t count) {
 
 void Board::poke(uint32_t address, const std::string& bytes) {
   require_memory(address, bytes.size());
-  std::copy(bytes.begin(), bytes.end(), mcu_.data.begin() + address);
+  std::copy(bytes.begin(), bytes.end(), mcu_.data.data() + address);
   if (address <= reg::SREG && address + bytes.size() > reg::SREG) mcu_.set_sreg(mcu_.data[reg::SREG]);
 }
 

@@ -1,28 +1,52 @@
-// What a page calls. Numbers and bytes go through two buffers in the module's memory; a caller keeps to the ranges that
-// are said here, for nothing is checked twice. Pots are 0..3 leader, 4..7 follower.
-#include <web/web_hal.h>
-
+// What a page calls: a board with its program, and the bench around it. Numbers and bytes go through two buffers in the
+// module's memory; a caller keeps to the ranges that are said here, for nothing is checked twice. Pots are 0..3 leader,
+// 4..7 follower.
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
+#include <string>
 
-#include "bench.h"
+#include "bench/bench.h"
+#include "bench/simulated_board.h"
+#include "board/board.h"
 
 #define EXPORT(name) __attribute__((export_name(#name)))
 
-namespace greywhale::web {
+namespace greywhale::bench {
 namespace {
 
-constexpr std::size_t kBytes = 4096;
+constexpr std::size_t kBytes = 65'536;
+constexpr std::uint64_t kSeed = 1;  // of the noise, and of what is in the memory when the power comes
+constexpr const char* kChips[] = {"atmega2560", "atmega328p"};
 
 std::array<double, 256> numbers;
 std::array<std::uint8_t, kBytes> bytes;
-std::optional<Bench> bench;
+
+std::string given(unsigned count) { return {reinterpret_cast<const char*>(bytes.data()), count}; }
+
+unsigned show(const std::string& text) {
+  std::copy(text.begin(), text.end(), bytes.begin());
+  return static_cast<unsigned>(text.size());
+}
 
 // Reads the numbers in the order in which they are declared.
 class Reader {
  public:
   double next() { return numbers.at(at_++); }
+  unsigned whole() { return static_cast<unsigned>(next()); }
+  char letter() { return static_cast<char>(next()); }
+  Pin pin() { return {letter(), whole()}; }
+
+  Wiring wiring() {
+    Wiring wiring{};
+    wiring.enable = pin();
+    for (MotorWires& motor : wiring.motors) motor = {{whole(), letter()}, pin()};
+    wiring.estop = pin();
+    wiring.clutch = pin();
+    return wiring;
+  }
+
   arm::Sensor<double> sensor() { return {next(), next()}; }
 
   arm::ArmParameters arm() {
@@ -50,99 +74,122 @@ class Reader {
   std::size_t at_ = 0;
 };
 
-template <std::size_t N>
-void show(std::size_t at, const std::array<double, N>& values) {
-  for (const double value : values) numbers.at(at++) = value;
+Electrics electrics_of(const arm::ArmParameters& arm) {
+  Electrics electrics{Chip::sign_magnitude, arm.drive.supply.volts, {}, Person::kAllJoints};
+  for (std::size_t joint = 0; joint < arm::kJoints; ++joint) {
+    const arm::Actuator<double>& motor = arm.joints[joint].actuator;
+    electrics.emf[joint] = motor.torque_per_volt * motor.resistance;
+  }
+  return electrics;
 }
+
+// All that stands in a page.
+struct Stand {
+  Stand(const char* chip, const Wiring& wiring, const arm::ArmParameters& arm, const Pots& pots)
+      : board(chip),
+        seam(board, wiring),
+        person(still_motion(Four{}), kSlice),
+        own(arm, kSeed),
+        bench(seam, wiring, person, own, &own, pots, kSeed, electrics_of(arm)) {}
+
+  board::Board board;
+  SimulatedBoard seam;
+  Person person;
+  OwnArm own;
+  Bench bench;
+};
+
+std::unique_ptr<Stand> stand;
 
 }  // namespace
 
 extern "C" {
 
 EXPORT(numbers) double* exported_numbers() { return numbers.data(); }
-EXPORT(bytes) std::uint8_t* exported_bytes() { return bytes.data(); }  // 4096 of them
-EXPORT(eeprom) std::uint8_t* exported_eeprom() { return hal::web::eeprom().data(); }
-EXPORT(eeprom_size) unsigned exported_eeprom_size() { return hal::web::eeprom_size; }
-EXPORT(eeprom_writes) unsigned exported_eeprom_writes() { return hal::web::eeprom_writes(); }
+EXPORT(bytes) std::uint8_t* exported_bytes() { return bytes.data(); }
+EXPORT(bytes_size) unsigned exported_bytes_size() { return kBytes; }
 
-// A bench with power off: numbers are the arm, the leader's and the follower's potentiometers (Reader).
-EXPORT(start) void exported_start(unsigned seed) {
+// A bench with power off and a blank board, 0 Mega or 1 Nano: numbers are the wiring, the arm, the leader's and the
+// follower's potentiometers (Reader).
+EXPORT(start) void exported_start(unsigned chip) {
   Reader reader;
-  Parameters parameters{};
-  parameters.arm = reader.arm();
-  parameters.leader_pots_supply = reader.pots(parameters.leader_pots);
-  parameters.follower_pots_supply = reader.pots(parameters.follower_pots);
-  bench.emplace(parameters, seed);
+  const Wiring wiring = reader.wiring();
+  const arm::ArmParameters arm = reader.arm();
+  Pots pots{};
+  pots.leader_supply = reader.pots(pots.leader);
+  pots.follower_supply = reader.pots(pots.follower);
+  stand = std::make_unique<Stand>(kChips[chip], wiring, arm, pots);
 }
 
-// Lets so many slices of 250 us pass; how many bytes the board said, which then stand in the buffer. Up to 40 slices
-// never say more than fits.
-EXPORT(run) unsigned exported_run(unsigned slices) {
-  for (; slices; --slices) bench->run_slice();
-  std::vector<std::uint8_t>& said = bench->board.said();
-  const unsigned count = static_cast<unsigned>(said.size());
-  for (unsigned i = 0; i < count; ++i) bytes.at(i) = said[i];
-  said.clear();
-  return count;
+// Writes a program from the buffer to this address of the flash; the reset leads to a bootloader.
+EXPORT(program) void exported_program(unsigned address, unsigned count, unsigned bootloader) {
+  stand->board.write_program({{address, given(count)}}, "program", bootloader != 0);
 }
+
+// Lets so many slices of 250 us pass, up to 2000; how many bytes the board said, which then stand in the buffer.
+EXPORT(run) unsigned exported_run(unsigned slices) {
+  stand->bench.run_slices(slices);
+  return show(stand->board.uart().receive());
+}
+EXPORT(crashed) unsigned exported_crashed() { return stand->board.state() == board::RunState::crashed; }
 
 // Takes bytes from the buffer to the board.
-EXPORT(send) void exported_send(unsigned count) {
-  for (unsigned i = 0; i < count; ++i) bench->board.send(bytes.at(i));
-}
+EXPORT(send) void exported_send(unsigned count) { stand->board.send(given(count)); }
 
 EXPORT(power) void exported_power(unsigned on) {
-  if (!on) bench->board.power_off();
-  else if (!bench->board.powered()) bench->board.power_on(hal::ResetCause::power_on);
+  if (!on) stand->board.power_off(kSeed);
+  else if (!stand->board.powered()) stand->board.power_on(kSeed);
 }
-EXPORT(reset) void exported_reset() { bench->board.power_on(hal::ResetCause::external); }
-EXPORT(estop) void exported_estop(unsigned pressed) { hal::web::press_estop(pressed != 0); }
-EXPORT(clutch) void exported_clutch(unsigned pressed) { hal::web::press_clutch(pressed != 0); }
+EXPORT(reset) void exported_reset() { stand->board.reset(); }
+EXPORT(powered) unsigned exported_powered() { return stand->board.powered(); }
+EXPORT(starts) unsigned exported_starts() { return static_cast<unsigned>(stand->board.stats().resets); }
+EXPORT(in_bootloader) unsigned exported_in_bootloader() { return stand->board.in_bootloader(); }
+EXPORT(cycle) double exported_cycle() { return static_cast<double>(stand->board.cycle()); }
+
+// The board's EEPROM, to and from the buffer; how many bytes it has, and how often it was written.
+EXPORT(read_eeprom) unsigned exported_read_eeprom() { return show(stand->board.eeprom().content()); }
+EXPORT(write_eeprom) void exported_write_eeprom(unsigned count) { stand->board.eeprom().set_content(given(count)); }
+EXPORT(eeprom_writes) unsigned exported_eeprom_writes() {
+  return static_cast<unsigned>(stand->board.eeprom().writes());
+}
+
+EXPORT(press_estop) void exported_press_estop(unsigned pressed) { stand->bench.press_estop(pressed != 0); }
+EXPORT(press_clutch) void exported_press_clutch(unsigned pressed) { stand->bench.press_clutch(pressed != 0); }
 
 // The leader is led to the first four numbers, rad.
-EXPORT(lead) void exported_lead() { bench->person.lead({numbers[0], numbers[1], numbers[2], numbers[3]}); }
-EXPORT(hold_inputs) void exported_hold_inputs() {  // mV
-  Millivolts millivolts{};
-  for (std::size_t pot = 0; pot < kPots; ++pot) millivolts[pot] = numbers[pot];
-  bench->hold_inputs(millivolts);
-}
+EXPORT(lead) void exported_lead() { stand->person.lead({numbers[0], numbers[1], numbers[2], numbers[3]}); }
 
 EXPORT(inject) void exported_inject(unsigned pot, unsigned kind) {
-  bench->pot_faults.inject(pot, static_cast<arm::PotFault>(kind));
+  stand->bench.inject(pot, static_cast<arm::PotFault>(kind));
 }
-EXPORT(swap) void exported_swap(unsigned one, unsigned other) { bench->pot_faults.swap(one, other); }
-EXPORT(touch) void exported_touch(unsigned one, unsigned other) { bench->touch(one, other); }
+EXPORT(swap) void exported_swap(unsigned one, unsigned other) { stand->bench.swap(one, other); }
+EXPORT(touch) void exported_touch(unsigned one, unsigned other) { stand->bench.touch(one, other); }
 EXPORT(set_wiring) void exported_set_wiring(unsigned pot, unsigned wiring) {
-  bench->set_wiring(pot, static_cast<arm::Wiring>(wiring));
+  stand->bench.set_wiring(pot, static_cast<arm::Wiring>(wiring));
 }
-EXPORT(let_float) void exported_let_float(unsigned pot, unsigned floats) { bench->let_float(pot, floats != 0); }
+EXPORT(let_float) void exported_let_float(unsigned pot, unsigned floats) { stand->bench.let_float(pot, floats != 0); }
 EXPORT(wire_motor) void exported_wire_motor(unsigned joint, double gain, unsigned driver) {
-  bench->wire_motor(joint, gain, driver);
+  stand->bench.wire_motor(joint, gain, driver);
 }
-EXPORT(change_supply) void exported_change_supply(double volts) { bench->change_supply(volts); }
-EXPORT(share_supply) void exported_share_supply() { bench->share_supply(); }
-EXPORT(load_tip) void exported_load_tip(double mass) { bench->load_tip(mass); }
-EXPORT(scale_play) void exported_scale_play(double times) { bench->scale_play(times); }
-EXPORT(scale_noise) void exported_scale_noise(double times) { bench->scale_noise(times); }
-EXPORT(mend) void exported_mend() { bench->mend(); }
+EXPORT(change_supply) void exported_change_supply(double volts) { stand->bench.change_supply(volts); }
+EXPORT(share_supply) void exported_share_supply() { stand->bench.share_supply(); }
+EXPORT(load_tip) void exported_load_tip(double mass) { stand->own.load_tip(mass); }
+EXPORT(scale_play) void exported_scale_play(double times) { stand->own.scale_play(times); }
+EXPORT(scale_noise) void exported_scale_noise(double times) { stand->bench.scale_noise(times); }
+EXPORT(mend) void exported_mend() { stand->bench.mend(); }
 
-// Numbers become: voltages at the converter (8, mV), at the motors (4, V), leader and follower (4 each, rad), enable,
-// and of each driver its duty 0..1 and its direction.
+// Numbers become: leader and follower (4 each, rad), voltages at the motors (4, V).
 EXPORT(look) void exported_look() {
-  show(0, bench->millivolts());
-  show(8, bench->voltages());
-  show(12, bench->person.angles());
-  show(16, bench->follower());
-  numbers[20] = hal::web::drivers_on();
-  for (std::uint8_t joint = 0; joint < arm::kJoints; ++joint) {
-    const hal::web::MotorPins pins = hal::web::motor_pins(joint);
-    numbers[21 + joint] = static_cast<double>(pins.pwm) / hal::web::full_duty;
-    numbers[25 + joint] = pins.direction;
-  }
+  std::size_t at = 0;
+  for (const Four& four : {stand->person.angles(), stand->bench.angles(), stand->bench.voltages()})
+    for (const double value : four) numbers[at++] = value;
 }
-EXPORT(powered) unsigned exported_powered() { return bench->board.powered(); }
-EXPORT(starts) unsigned exported_starts() { return bench->board.starts(); }
+
+// Two benches that behaved alike to the cycle have the same: interrupts, bytes, memory that was written, resets.
+EXPORT(trace_hash) double exported_trace_hash() {
+  return static_cast<double>(stand->board.trace_hash() >> 11);  // what a double holds
+}
 
 }  // extern "C"
 
-}  // namespace greywhale::web
+}  // namespace greywhale::bench

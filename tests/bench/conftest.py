@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 import pytest
 
+from greywhale.arm.parameters import Potentiometer, PotentiometerBank
 from greywhale.files.trajectory import Trajectory
 from greywhale_sim.bench import SLICE_S, Bench
 from greywhale_sim.leader_player import LeaderPlayer
@@ -114,18 +115,8 @@ class FakePlant:
         self.angles = np.array(angles)
 
 
-class FakePots:
-    """1 V a radian around 2.5 V."""
-
-    def __init__(self) -> None:
-        self.wirings: dict[int, object] = {}
-
-    def set_wiring(self, joint: int, wiring: object) -> None:
-        self.wirings[joint] = wiring
-
-    def millivolts(self, angles: np.ndarray, out: np.ndarray) -> np.ndarray:
-        out[:] = 2500.0 + 1000.0 * angles
-        return out
+# 1 V a radian around 2.5 V.
+POTS = (PotentiometerBank(joint=(Potentiometer(track=5.0),) * 4),) * 2
 
 
 @pytest.fixture
@@ -148,4 +139,4 @@ def plant() -> FakePlant:
 @pytest.fixture
 def bench(board: FakeBoard, plant: FakePlant, motion: Trajectory) -> Bench:
     player = LeaderPlayer(motion, SLICE_S)
-    return Bench(board, MEGA, plant, player, FakePots(), FakePots(), supply_v=12.0)
+    return Bench(board, MEGA, plant, player, POTS, supply_v=12.0)

@@ -4,27 +4,25 @@ from __future__ import annotations
 
 import re
 
-import numpy as np
 import pytest
 
 from greywhale.base.errors import UserError
 from greywhale.cli.entry import run
 from greywhale_sim import faults
-from greywhale_sim.bench import Bench
-from greywhale_sim.board_supply import FULL_MV, SUNK_MV, SUNK_SLICES, SharedSupply
+from greywhale_sim.bench import SLICE_CYCLES, Bench
 from greywhale_sim.faults import BY_NAME, FAULTS, WHERE, Fault
-from greywhale_sim.pins_seen import PinsSeen
 from tests.bench.conftest import FakeBoard
 
 
 def wired(bench: Bench) -> tuple[object, ...]:
     return (
-        bench.pot_faults.any,
+        bench.has_pot_faults,
+        *(bench.pot_wiring(pot) for pot in range(8)),
         bench.floating,
         *bench.motor_gains,
-        *bench.motor_wires,
+        *bench.motor_drivers,
         bench.supply_v,
-        bench.shared_supply,
+        bench.shares_supply,
     )
 
 
@@ -33,9 +31,8 @@ def test_each_is_injected_at_every_place_and_mended(bench: Bench, fault: Fault) 
     before = wired(bench)
     for place in WHERE[fault.on]:
         faults.inject(bench, f"{fault.name}:{place}" if place else fault.name)
-        wires = [*bench.leader_pots.wirings.values(), *bench.follower_pots.wirings.values()]  # type: ignore[attr-defined]
-        assert wired(bench) != before or any(wire != wires[0] for wire in wires) or len(wires) == 1
-        faults.mend(bench)
+        assert wired(bench) != before
+        bench.mend()
         assert wired(bench) == before
 
 
@@ -60,25 +57,36 @@ def test_the_command_line_lists_them_all(capsys: pytest.CaptureFixture[str]) -> 
     assert [re.split("[: ]", line)[0] for line in lines] == list(BY_NAME)
 
 
-def test_a_shared_supply_sinks_while_a_motor_draws_and_comes_back() -> None:
-    board = FakeBoard()
-    supply = SharedSupply(board)
-    supply.look(np.zeros(4))
+ENABLE, DUTY = 0, slice(1, 5)
+SUNK_SLICES = 120  # 30 ms
+
+
+def test_a_shared_supply_sinks_while_a_motor_draws_and_comes_back(bench: Bench, board: FakeBoard) -> None:
+    bench.share_supply()
+    board.pins[ENABLE] = 1
+    bench.run_slices(1)
     assert board.events == []
-    supply.look(np.array([0.0, -1.5, 0.0, 0.0]))
-    assert board.events == [f"supply {SUNK_MV}"]
-    for _ in range(SUNK_SLICES):
-        supply.look(np.zeros(4))
-    assert board.events == [f"supply {SUNK_MV}", f"supply {FULL_MV}"]
+    board.pins[DUTY] = [0.0, 0.2, 0.0, 0.0]
+    bench.run_slices(1)
+    assert board.events == ["supply 2400"]
+    board.pins[:] = 0
+    bench.run_slices(SUNK_SLICES)
+    assert board.events == ["supply 2400", "supply 5000"]
 
 
-def test_the_pins_are_seen_only_while_the_drivers_are_on() -> None:
-    seen = PinsSeen()
-    seen.look(0, False, [0.9] * 4)
-    seen.look(100, True, [0.1, 0.0, 0.0, 0.2])
-    seen.look(150, True, [0.3, 0.0, 0.0, 0.1])
-    seen.look(400, False, [0.8] * 4)
-    seen.look(1000, True, [0.0] * 4)
-    assert seen.duties == [0.3, 0.0, 0.0, 0.2]
-    assert seen.longest(1100) == 300
-    assert seen.longest(1500) == 500
+def test_the_pins_are_seen_only_while_the_drivers_are_on(bench: Bench, board: FakeBoard) -> None:
+    """A driver without its enable pin drives nothing, whatever its duty is."""
+    for enable, duties, slices in (
+        (0, [0.9] * 4, 4),
+        (1, [0.1, 0.0, 0.0, 0.2], 5),
+        (1, [0.3, 0.0, 0.0, 0.1], 10),
+        (0, [0.8] * 4, 20),
+        (1, [0.0] * 4, 2),
+    ):
+        board.pins[ENABLE], board.pins[DUTY] = enable, duties
+        bench.run_slices(slices)
+    duties, longest = bench.take_pins_seen(board.cycle)
+    assert duties == [0.3, 0.0, 0.0, 0.2]
+    assert longest == pytest.approx(15 * SLICE_CYCLES, abs=1)
+    bench.run_slices(4)
+    assert bench.take_pins_seen(board.cycle) == ([0.0] * 4, 0), "nothing was asked of them since"

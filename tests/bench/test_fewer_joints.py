@@ -18,7 +18,7 @@ from greywhale_sim.bench import SLICE_S, Bench
 from greywhale_sim.leader_player import LeaderPlayer
 from greywhale_sim.lockstep import LockStepBench, tell_joints
 from greywhale_sim.wiring import MEGA
-from tests.bench.conftest import FakeBoard, FakePlant, FakePots
+from tests.bench.conftest import POTS, FakeBoard, FakePlant
 
 UNUSED = {f"{side}{joint}.scale": 0 for side in ("leader", "follower") for joint in (2, 3)}
 
@@ -26,7 +26,7 @@ UNUSED = {f"{side}{joint}.scale": 0 for side in ("leader", "follower") for joint
 @pytest.fixture
 def two(board: FakeBoard, plant: FakePlant, motion: Trajectory) -> Bench:
     leader = LeaderPlayer(motion, SLICE_S, joints=(0, 1))
-    return Bench(board, MEGA, plant, leader, FakePots(), FakePots(), 15.0, joints=(0, 1))
+    return Bench(board, MEGA, plant, leader, POTS, 15.0, joints=(0, 1))
 
 
 def test_their_inputs_float_and_their_motors_are_off_whatever_is_injected_and_mended(two: Bench) -> None:
@@ -36,7 +36,7 @@ def test_their_inputs_float_and_their_motors_are_off_whatever_is_injected_and_me
     two.let_float(3, False)
     assert two.floating == 0b1100_1100
     assert two.motor_gains[2:] == [0.0, 0.0]
-    faults.mend(two)
+    two.mend()
     assert two.motor_gains == [1.0, 1.0, 0.0, 0.0]
     assert two.floating == 0b1100_1100
 

@@ -8,10 +8,10 @@ import pytest
 from greywhale.base.errors import UserError
 from greywhale.files.trajectory import Trajectory
 from greywhale_sim.leader_player import BRING_BACK_S, LET_GO_S, LeaderPlayer
-from greywhale_sim.streamed_leader import FASTEST_RAD_S
 
 SLICE = 0.01
 START = 1.0
+FASTEST_RAD_S = 5.0  # no hand turns a joint faster
 FALLEN = np.array([-1.0, -1.0, -1.0, -1.0])
 
 

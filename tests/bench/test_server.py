@@ -243,7 +243,7 @@ def test_a_potentiometer_floats_until_it_is_connected_again(server: Server, boar
     commands.run(server, "pot leader 1 connected")
     commands.run(server, "pot follower 2 open")
     assert board.events == ["floating 0x2", "floating 0x42", "floating 0x40", "floating 0x0"]
-    assert server.bench.follower_pots.wirings[2] is Wiring.OPEN  # type: ignore[attr-defined]
+    assert server.bench.pot_wiring(4 + 2) == Wiring.OPEN
 
 
 def test_the_emergency_stop_closes_its_pin_to_ground_until_it_is_released(server: Server, board: Any) -> None:

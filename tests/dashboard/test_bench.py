@@ -69,9 +69,9 @@ def test_every_fault_is_staged_by_its_name_and_mended(bench: LockStepBench, cont
     assert len({fault["name"] for fault in found}) == len(found) > 10
     for fault in found:
         controls.change({"fault": ":".join([fault["name"], *fault["places"][:1]])})
-    assert bench.bench.pot_faults.any
+    assert bench.bench.has_pot_faults
     controls.change({"fault": None})
-    assert not bench.bench.pot_faults.any
+    assert not bench.bench.has_pot_faults
     assert bench.bench.motor_gains == [1.0] * 4
     controls.change({"estop": True})
     assert bench.bench.estop_pressed

@@ -140,7 +140,7 @@ def test_a_frozen_potentiometer_cannot_let_a_known_arm_run_away(lock_step: Any, 
     set_parameters(host, tuned() | travel(load_arm("default")))
     host.follow()
     lead(host, joint, 0.0, 2.0)
-    host.bench.pot_faults.inject(4 + joint, PotFault.FROZEN)
+    host.bench.inject(4 + joint, PotFault.FROZEN)
     host.bench.leader.lead(np.eye(4)[joint] * 0.4)
     farthest = 0.0
     for _ in range(300):

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from greywhale_sim._board import Board
+from greywhale._native import Board
 from greywhale_sim.programs import load_elf
 from tools import avr_tool
 from tools.gates import size, stack, tick

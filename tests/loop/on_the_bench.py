@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from greywhale import arm
 from greywhale.arm import ArmParameters
 from greywhale.base.types import Floats
 from greywhale.files.trajectory import Trajectory
@@ -94,10 +93,9 @@ class _Watched:
         self.bench = Bench(
             board=self.board,
             wiring=wiring_of(board),
-            plant=arm.Arm(parameters, seed=1),
+            plant=parameters,
             leader=LeaderPlayer(motion, SLICE_S),
-            leader_pots=arm.Potentiometers(parameters.leader_pots, 1),
-            follower_pots=arm.Potentiometers(parameters.follower_pots, 2),
+            pots=(parameters.leader_pots, parameters.follower_pots),
             supply_v=parameters.drive.supply,
         )
         self.decoder = FrameDecoder()
@@ -144,15 +142,16 @@ class _Watched:
 
     def follow(self, seconds: float) -> Recording:
         """Enable, and keep everything from the tick on in whose course the drivers come on."""
-        bench, plant = self.bench, self.bench.plant
-        assert isinstance(plant, arm.Arm)
+        bench = self.bench
         rows: list[tuple[Floats, Floats, Floats]] = []
         start: list[tuple[int, Floats]] = []
         half_gap = np.array([joint.gear.half_gap for joint in self.parameters.joint])
 
         def trace(cycle: int, pins: Floats, angles: Floats) -> None:
             if pins[0] and not start:
-                start.append((cycle - SLICE_CYCLES, (plant.motor_angles - plant.angles) / half_gap))
+                moved = bench.own_arm
+                assert moved is not None
+                start.append((cycle - SLICE_CYCLES, (moved.motor_angles - moved.angles) / half_gap))
             if start:
                 rows.append((bench.leader.angles.copy(), pins[1:5] * (2.0 * pins[5:9] - 1.0), angles.copy()))
 

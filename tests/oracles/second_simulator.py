@@ -14,9 +14,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from greywhale._native import Board
 from greywhale.protocol import frames, schema
 from greywhale.protocol.declared import Message
-from greywhale_sim._board import Board
 from greywhale_sim.programs import load_hex
 from greywhale_sim.wiring import NANO
 from tools import ROOT

@@ -37,7 +37,7 @@ def build(folder: Path) -> ctypes.CDLL:
 
 
 class SimavrBoard:
-    """The part of greywhale_sim._board.Board that the comparisons use."""
+    """The part of greywhale._native.Board that the comparisons use."""
 
     def __init__(self, calls: ctypes.CDLL, chip: str) -> None:
         self._calls = calls

@@ -1,130 +1,140 @@
-"""The bench inside a page is that of greywhale_sim: the same pins give the same voltages and angles, slice by slice.
+"""The bench inside a page is that of Python, by another compiler: the same bytes and cycles, voltages and angles.
 
-The firmware inside the page drives its bench, and what it does with its pins is replayed to greywhale_sim's. Both have
-the same seeds, so every number is the same to the bit.
+Both run the same image on the same board, with the same seeds, and are asked for the same things at the same times.
 """
 
 from __future__ import annotations
 
 import struct
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from typing import Any
 
 import numpy as np
 import pytest
 
-from greywhale.arm import Arm, Potentiometers
+from greywhale._native import Board
 from greywhale.files.arm import default_arm
 from greywhale.files.trajectory import Trajectory
 from greywhale.protocol import schema
 from greywhale_sim import faults
-from greywhale_sim.bench import SLICE_S, Bench
-from greywhale_sim.board_supply import FULL_MV
+from greywhale_sim.assemble import BUILDS, BenchOptions, build_bench
+from greywhale_sim.bench import SLICE_S, SLICES_PER_S
 from greywhale_sim.leader_player import LeaderPlayer
-from greywhale_sim.wiring import MEGA
-from tests.bench.conftest import FakeBoard
+from greywhale_sim.wiring import BOARDS
 from tests.oracles.page_bench import PageBench
 from tests.oracles.second_simulator import request
 from tools.site.bench_data import fault_calls
 
-SEED = 1
-PINS, POWERED = slice(20, 29), 29  # of what the module shows
-
-
-class ReplayedBoard(FakeBoard):
-    """A board to greywhale_sim's bench: its pins are those of the page, and nothing runs on it."""
-
-    supply_mv = FULL_MV
-
-    def set_supply(self, millivolts: int, seed: int = 1) -> None:
-        self.supply_mv = millivolts
+HASH_BITS_LEFT_OUT = 11  # a page's number holds the others
+BOOT_S = {"mega": 1.2, "nano": 2.4}  # their bootloaders wait for a host at first
+PIECE_SLICES = 40  # 10 ms, of which a page's buffer holds the bytes
 
 
 class Pair:
     """Both benches, at the same slice."""
 
-    def __init__(self, page: PageBench) -> None:
-        arm = default_arm()
+    def __init__(self, board: str) -> None:
+        wiring = BOARDS[board]
         home = Trajectory(np.array([0.0, 1.0]), np.zeros((2, 4)))
-        self.page, self.board = page, ReplayedBoard()
-        self.bench = Bench(
-            self.board,
-            MEGA,
-            Arm(arm, seed=SEED),
-            LeaderPlayer(home, SLICE_S),
-            Potentiometers(arm.leader_pots, SEED),
-            Potentiometers(arm.follower_pots, SEED + 1),
-            arm.drive.supply,
-        )
-        self.lead([0.0] * 4)
-        page.call("power", 1)
+        self.page = PageBench(default_arm(), wiring, BUILDS / wiring.environment / "firmware.hex")
+        self.bench = build_bench(BenchOptions(board=board), leader=LeaderPlayer(home, SLICE_S))
+        assert isinstance(self.bench.board, Board)
+        self.board = self.bench.board
+        self.page.call("power", 1)
+        self.said = 0
+        self.live(BOOT_S[board])
 
-    def lead(self, angles: list[float]) -> None:
-        self.page.calls([["put", angles], ["lead"]])
+    def both(self, name: str, *given: Any) -> None:
+        """Call one method of both; a kind of fault is a number to the page."""
+        getattr(self.bench, name)(*given)
+        self.page.call(name, *(float(getattr(one, "value", one)) for one in given))
+
+    def lead(self, *angles: float) -> None:
+        self.page.call("put", angles)
+        self.page.call("lead")
         self.bench.leader.lead(np.array(angles))
 
-    def fault(self, name: str, place: str) -> None:
-        self.page.calls(fault_calls(name, place))
-        faults.inject(self.bench, f"{name}:{place}" if place else name)
-
-    def mend(self) -> None:
-        self.page.call("mend")
-        faults.mend(self.bench)
-
     def send(self, data: bytes) -> None:
-        self.page.call("send", data.hex())
+        self.page.send(data)
+        self.board.uart_send(data)
 
-    def live(self, slices: int) -> None:
-        """Let both live, and compare them after each slice."""
-        before, after = self.page.calls([["look"], ["trace", slices]])
-        page = np.array(after)
-        ours = np.empty_like(page)
-        for row, pins in zip(ours, [before[PINS], *page[:-1, PINS]], strict=True):
-            self.board.pins[: len(pins)] = pins
-            self.bench.run_slices(1)
-            row[:20] = *self.board.millivolts[-1], *self.bench.voltages, *self.bench.leader.angles, *self.bench.angles
-            row[POWERED] = self.board.supply_mv == FULL_MV
-        ours[:, PINS] = page[:, PINS]
-        np.testing.assert_array_equal(page, ours)
+    def start(self) -> None:
+        self.send(request(schema.ClearFaultRequest, 1))
+        self.live(0.01)
+        self.send(request(schema.TelemetryRequest, 2, struct.pack("<H", 1)))
+        self.send(request(schema.EnableRequest, 3, struct.pack("<H", 0)))
+
+    def live(self, seconds: float) -> None:
+        """Let both live, and compare all that they show then."""
+        for _ in range(round(seconds * SLICES_PER_S / PIECE_SLICES)):
+            self.bench.run_slices(PIECE_SLICES)
+            said = self.board.uart_receive()
+            assert bytes.fromhex(self.page.call("run", PIECE_SLICES)) == said
+            self.said += len(said)
+        ours = [*self.bench.leader.angles, *self.bench.angles, *self.bench.voltages]
+        assert self.page.call("look") == ours
+        assert self.page.call("trace_hash") == self.board.trace_hash >> HASH_BITS_LEFT_OUT
+        assert self.page.call("cycle") == self.board.cycle
 
 
 @pytest.fixture
-def pair() -> Iterator[Pair]:
-    with PageBench(default_arm(), SEED) as page:
-        yield Pair(page)
+def pair() -> Iterator[Callable[[str], Pair]]:
+    made: list[Pair] = []
+
+    def make(board: str = "mega") -> Pair:
+        made.append(Pair(board))
+        return made[-1]
+
+    yield make
+    for one in made:
+        one.page.close()
 
 
-def start(pair: Pair) -> None:
-    pair.send(request(schema.ClearFaultRequest, 1))
-    pair.live(40)
-    pair.send(request(schema.EnableRequest, 2, struct.pack("<H", 0)))
-
-
-def test_the_arm_follows_is_loaded_and_is_brought_back(pair: Pair) -> None:
-    pair.live(400)
-    start(pair)
+@pytest.mark.parametrize("board", BOARDS)
+def test_the_arm_follows_is_loaded_and_is_brought_back(pair: Callable[[str], Pair], board: str) -> None:
+    two = pair(board)
+    two.start()
     for angles in ([0.4, 0.3, -0.5, 0.2], [-0.9, -0.2, 0.6, -0.4]):
-        pair.lead(angles)
-        pair.live(4000)
-    pair.page.call("load_tip", 0.2)
-    pair.bench.load_tip(0.2)
-    pair.live(1000)
-    assert np.abs(pair.bench.voltages).max() > 0.5
-    pair.send(request(schema.StopRequest, 3))
-    pair.lead([3.0, 0.0, 0.0, 0.0])  # no hand moves a follower beyond its stops
-    pair.live(8000)
-    assert pair.bench.angles[0] == default_arm().joint[0].stops.max
-    assert pair.bench.leader.hold is not None
+        two.lead(*angles)
+        two.live(1.0)
+    two.both("load_tip", 0.2)
+    two.both("scale_noise", 3.0)
+    two.live(0.3)
+    assert np.abs(two.bench.voltages).max() > 0.5
+    assert two.said > 20_000, "samples came"
+    two.send(request(schema.StopRequest, 3))
+    two.lead(3.0, 0.0, 0.0, 0.0)  # no hand moves a follower beyond its stops
+    two.live(2.0)
+    assert two.bench.angles[0] == default_arm().joint[0].stops.max
 
 
 @pytest.mark.parametrize("name", [one.name for one in faults.FAULTS])
-def test_a_mistake_is_the_same_mistake(pair: Pair, name: str) -> None:
+def test_a_mistake_is_the_same_mistake(pair: Callable[..., Pair], name: str) -> None:
+    two = pair()
     places = faults.WHERE[faults.BY_NAME[name].on]
-    pair.live(300)
     for place in dict.fromkeys((places[0], places[-1])):
-        pair.fault(name, place)
-        start(pair)
-        pair.lead([0.3, 0.2, -0.4, 0.3])
-        pair.live(1500)
-        pair.mend()
-        pair.lead([0.0, 0.1, 0.0, 0.0])
-        pair.live(400)
+        faults.inject(two.bench, f"{name}:{place}" if place else name)
+        for method, *given in fault_calls(name, place):
+            two.page.call(method, *given)
+        two.start()
+        two.lead(0.3, 0.2, -0.4, 0.3)
+        two.live(0.6)
+        two.both("mend")
+        two.lead(0.0, 0.1, 0.0, 0.0)
+        two.live(0.2)
+
+
+def test_what_the_board_stores_is_the_same_and_outlives_a_cut_in_the_middle(pair: Callable[..., Pair]) -> None:
+    two = pair()
+    two.send(request(schema.ParamSaveRequest, 4))
+    two.live(0.3)  # a save takes longer
+    two.page.call("power", 0)
+    two.board.power_off(1)
+    for again in (False, True):
+        stored = two.board.eeprom()
+        assert bytes.fromhex(two.page.call("read_eeprom")) == stored
+        assert stored != b"\xff" * len(stored)
+        if not again:
+            two.page.call("power", 1)
+            two.board.power_on(1)
+            two.live(BOOT_S["mega"])

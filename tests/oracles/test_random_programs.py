@@ -14,7 +14,7 @@ from typing import Any
 
 import pytest
 
-from greywhale_sim._board import Board
+from greywhale._native import Board
 from greywhale_sim.programs import load_hex
 from tests.oracles import simavr_board
 from tests.oracles.second_simulator import NODE, SCRIPTS

@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 
-from greywhale_sim._board import Board
+from greywhale._native import Board
 from greywhale_sim.programs import load_elf, load_hex
 from tests.board.flash.hex_files import hex_text
 from tests.oracles.simavr_board import SimavrBoard, build

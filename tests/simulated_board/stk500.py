@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from greywhale_sim._board import Board
+from greywhale._native import Board
 
 CYCLES_PER_MS = 16_000
 

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import pytest
 
-from greywhale_sim._board import Board
+from greywhale._native import Board
 from greywhale_sim.programs import load_hex
 from greywhale_sim.wiring import BOOTLOADERS
 from tests.simulated_board.avr import MakeProgram

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from greywhale_sim._board import Board
+from greywhale._native import Board
 from greywhale_sim.programs import load_hex
 from tests.board.flash.hex_files import hex_text
 from tests.simulated_board.avr import MakeProgram

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from greywhale_sim._board import Board, BoardError
+from greywhale._native import Board, BoardError
 from greywhale_sim.programs import load_elf, load_hex
 from greywhale_sim.symbols import read_symbols
 from tests.board.flash.hex_files import record

@@ -10,9 +10,9 @@ from pathlib import Path
 import numpy as np
 
 from greywhale import _native
+from greywhale._native import Board
 from greywhale.fuzzy import exact, load_joints, twin
 from greywhale.fuzzy.settings import SET_UNIT, JointSettings
-from greywhale_sim._board import Board
 from greywhale_sim.programs import load_elf
 from greywhale_sim.symbols import read_symbols
 from tools import ROOT, avr_tool

@@ -1,4 +1,4 @@
-"""Builds and installs greywhale, editable and with its native modules.
+"""Builds and installs greywhale, editable and with its native module.
 
 The build leaves the .venv alone, so that it may run beside what else uses the .venv; the installation takes a second.
 """
@@ -19,17 +19,17 @@ BUILD = (
 ROOMS = ("codes", "fuzzy_pdi", "signal_chain")  # of the firmware
 SOURCES = (
     *("pyproject.toml", "CMakeLists.txt", "requirements.txt", "LICENSE"),
-    *("host/native", "sim/CMakeLists.txt", "sim/arm", "sim/board"),
+    *("host/native", "sim/bench.cmake", "sim/arm", "sim/bind", "sim/board"),
     *(f"firmware/lib/{room}" for room in ROOMS),
 )
 MODULES = ("host/src/greywhale", "sim/bench/greywhale_sim")  # whose modules an editable wheel must name
-STUBS = ("host/src/greywhale/_native.pyi", "sim/bench/greywhale_sim/_board.pyi")
+STUB = ROOT / "host/src/greywhale/_native.pyi"
 STAMP = "greywhale"
 
 
 def build(checks: bool) -> None:
     """Build the wheel if it is not current. For checks a warning is an error."""
-    if stamps.is_current(STAMP, inputs(), checks) and all((ROOT / stub).exists() for stub in STUBS):
+    if stamps.is_current(STAMP, inputs(), checks) and STUB.exists():
         return
     say("building greywhale (50 s)")
     stamps.forget(STAMP)
@@ -56,7 +56,8 @@ def install(checks: bool) -> None:
 def inputs() -> str:
     """The digest of what the wheel is built from."""
     names = [str(path) for path in stamps.files_below(*MODULES) if path.suffix == ".py"]
-    return stamps.digest(stamps.files_below(*SOURCES), *names)
+    bench = (path for path in stamps.files_below("sim/bench") if path.suffix in (".h", ".cpp"))
+    return stamps.digest([*stamps.files_below(*SOURCES), *bench], *names)
 
 
 def name_places_from_here() -> None:

@@ -1,7 +1,7 @@
-"""Compiles what a page runs to WebAssembly: its bench (firmware/lib, sim/arm, sim/web) and its tuner (host/native).
+"""Compiles what a page runs to WebAssembly: the bench (sim) and the tuner (host/native).
 
-The same sources as for the board and for the simulation, by another compiler. No multiplication and addition may be
-fused, so that the arm moves by the same bits as elsewhere.
+The same sources as for Python, by another compiler. No multiplication and addition may be fused, so that the arm moves
+by the same bits as elsewhere.
 """
 
 from __future__ import annotations
@@ -38,14 +38,16 @@ class Module:
     def path(self) -> Path:
         return ROOT / "build" / "web" / f"{self.name}.wasm"
 
+    def files(self) -> Iterator[Path]:
+        return (
+            path for path in stamps.files_below(*self.places, *self.headers) if path.suffix in (".cpp", ".h", ".inc")
+        )
+
     def sources(self) -> Iterator[Path]:
-        """Of the hardware's implementations, that for the page alone."""
-        for path in stamps.files_below(*self.places):
-            if path.suffix == ".cpp" and (path.parent.name == "web" or "hal" not in path.parts):
-                yield path
+        return (path for path in stamps.files_below(*self.places) if path.suffix == ".cpp")
 
 
-BENCH = Module("bench", ("firmware/lib", "sim/arm", "sim/web"), (), ("-O2",))
+BENCH = Module("bench", ("sim/arm", "sim/bench", "sim/board", "sim/web"), (), ("-O2",))
 TUNER = Module(
     "tuner",
     ("firmware/lib/fuzzy_pdi", "sim/arm", "sim/web/no_exceptions.cpp", "host/native/closed_loop", "host/native/web"),
@@ -57,7 +59,7 @@ MODULES = (BENCH, TUNER)
 
 def step() -> None:
     for module in MODULES:
-        wanted = stamps.digest([*stamps.files_below(*module.places, *module.headers), Path(__file__)])
+        wanted = stamps.digest([*module.files(), Path(__file__)])
         if not (stamps.is_current(module.name, wanted) and module.path.is_file()):
             say(f"building the {module.name} for the page")
             _build(module)

@@ -1,12 +1,12 @@
-"""Writes the data of the bench inside a page: the arm's numbers, the mistakes, the motion of a person.
+"""Writes the data of the bench inside a page: the numbers of board and arm, the mistakes, the motion of a person.
 
-A mistake is done to a bench that only writes down what is done to it, so that it is described once, in
-greywhale_sim.faults. sim/web/exports.cpp takes the numbers and the calls.
+sim/web/exports.cpp takes the numbers and the calls.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import base64
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -14,10 +14,11 @@ import numpy as np
 from greywhale.arm import ArmParameters
 from greywhale.arm.parameters import PotentiometerBank
 from greywhale.base.types import Floats
+from greywhale.board.flash.images import read_pieces
 from greywhale.dashboard.answers import arm_facts
 from greywhale.loop import human_reaches
-from greywhale.protocol.firmware import JOINTS
 from greywhale_sim import commands, faults
+from greywhale_sim.wiring import MEGA, Pin, Wiring
 
 Call = list[str | float]
 
@@ -53,24 +54,29 @@ def pot_numbers(bank: PotentiometerBank) -> list[float]:
     return [*numbers, bank.supply]
 
 
-class _Recorder:
-    """A bench to the functions of greywhale_sim.faults: it writes down what they do, as calls of the module."""
+def wiring_numbers(wiring: Wiring) -> list[float]:
+    """The pins of a board, in the same order."""
+    numbers: list[float] = [*_pin(wiring.enable)]
+    for motor in wiring.motors:
+        numbers += [motor.pwm.timer, ord(motor.pwm.channel), *_pin(motor.direction)]
+    return [*numbers, *_pin(wiring.estop), *_pin(wiring.clutch)]
 
-    board = None
 
-    def __init__(self) -> None:
-        self.calls: list[Call] = []
-        self.pot_faults = self
-        self.leader_pots, self.follower_pots = _Bank(self.calls, 0), _Bank(self.calls, JOINTS)
+def _pin(pin: Pin) -> tuple[int, int]:
+    return ord(pin.port), pin.bit
 
-    def __getattr__(self, name: str) -> Callable[..., None]:
-        return lambda *given: self.calls.append([name, *(_number(one) for one in given)])
 
-    def __setattr__(self, name: str, value: Any) -> None:
-        if name == "shared_supply":
-            self.calls.append(["share_supply"])
-        else:
-            super().__setattr__(name, value)
+def program(path: Path) -> dict[str, Any]:
+    """The one piece of a HEX file, which lies beside the firmware that a page reads itself."""
+    ((address, content),) = read_pieces(path)
+    return {"address": address, "bytes": base64.b64encode(content).decode("ascii")}
+
+
+def fault_calls(name: str, place: str) -> list[Call]:
+    """The calls that stage a mistake at a place; "" for the one that has none."""
+    fault = faults.BY_NAME[name]
+    calls = fault.calls(faults.WHERE[fault.on].index(place))
+    return [[str(method), *map(_number, given)] for method, *given in calls]
 
 
 def _number(given: Any) -> float:
@@ -78,29 +84,12 @@ def _number(given: Any) -> float:
     return int(value) if isinstance(value, bool) else value
 
 
-class _Bank:
-    def __init__(self, calls: list[Call], first: int) -> None:
-        self._calls = calls
-        self._first = first
-
-    def set_wiring(self, joint: int, wiring: Any) -> None:
-        self._calls.append(["set_wiring", self._first + joint, int(wiring.value)])
-
-
-def fault_calls(name: str, place: str) -> list[Call]:
-    """The calls that stage a mistake at a place; "" for the one that has none."""
-    recorder: Any = _Recorder()
-    fault = faults.BY_NAME[name]
-    fault.inject(recorder, faults.WHERE[fault.on].index(place))
-    calls: list[Call] = recorder.calls
-    return calls
-
-
-def bench_data(arm: ArmParameters) -> dict[str, Any]:
+def bench_data(arm: ArmParameters, wiring: Wiring = MEGA) -> dict[str, Any]:
     """All of it, as the page reads it."""
     stops = [joint.stops for joint in arm.joint]
     return {
-        "arm": arm_numbers(arm),
+        "bootloader": program(wiring.bootloader),
+        "numbers": wiring_numbers(wiring) + arm_numbers(arm),
         "description": arm_facts(arm),
         "leader": {"minimum": [stop.min for stop in stops], "maximum": [stop.max for stop in stops]},
         "supply": {"minimum": 0.0, "maximum": commands.MOST_SUPPLY_V, "value": arm.drive.supply},

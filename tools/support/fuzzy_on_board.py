@@ -10,9 +10,9 @@ import struct
 from dataclasses import dataclass
 from pathlib import Path
 
+from greywhale._native import Board
 from greywhale.fuzzy.settings import MOST_CE_TICKS, JointSettings
 from greywhale.protocol.schema import Refusal
-from greywhale_sim._board import Board
 from greywhale_sim.programs import load_elf
 from greywhale_sim.symbols import read_symbols
 from tools import BUILT_FIRMWARE

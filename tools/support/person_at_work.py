@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from greywhale.arm import Arm, ArmParameters
+from greywhale.arm import ArmParameters
 from greywhale.base.types import Floats
 from greywhale.files.trajectory import Trajectory
 from greywhale.protocol.firmware import JOINTS
@@ -32,25 +32,25 @@ class PersonAtWork(LeaderPlayer):
 
     def __init__(self, motion: Trajectory, at_time: Callable[[float], None]) -> None:
         super().__init__(motion, SLICE_S)
+        self.set_patience(round(PATIENCE_S / SLICE_S))
         self._at_time = at_time
-        self._worked = self._paused = 0
+        self._worked = 0
+        self._was_at = self.angles
         self.errors: list[Floats] = []
         self._sum: Floats = np.zeros(JOINTS)
 
-    def step(self, enabled: bool, follower: Floats) -> None:
-        """Advance one slice."""
-        self._paused = 0 if enabled else self._paused + 1
-        if self._worked and 0 < self._paused * SLICE_S < PATIENCE_S:
+    def watch(self, cycle: int, pins: Floats, follower: Floats) -> None:
+        """Look at the arms after every slice: the bench's trace."""
+        leader, self._was_at = self._was_at, self.angles
+        if not pins[0]:
             return
-        if enabled:
-            self._worked += 1
-            self._sum = self._sum + (self.angles - follower) ** 2
-            if self._worked % round(1.0 / SLICE_S) == 0:
-                self.errors.append(self._sum * SLICE_S)
-                self._sum = np.zeros(JOINTS)
-            if self._worked % round(CHANGE_S / SLICE_S) == 0:
-                self._at_time(self._worked * SLICE_S)
-        super().step(enabled, follower)
+        self._worked += 1
+        self._sum = self._sum + (leader - follower) ** 2
+        if self._worked % round(1.0 / SLICE_S) == 0:
+            self.errors.append(self._sum * SLICE_S)
+            self._sum = np.zeros(JOINTS)
+        if self._worked % round(CHANGE_S / SLICE_S) == 0:
+            self._at_time(self._worked * SLICE_S)
 
 
 def working_bench(
@@ -60,10 +60,9 @@ def working_bench(
     with it. Another engine's plant moves it where one is given.
     """
     options = options or BenchOptions()
-    bench = build_bench(options, plant)
     person = PersonAtWork(motion, lambda seconds: become(bench, arm_at(seconds)))
-    bench.leader = person
-    bench.place(person.home)
+    bench = build_bench(options, plant, person)
+    bench.trace = person.watch
     return LockStepBench(options, bench), person
 
 
@@ -72,9 +71,8 @@ def become(bench: Bench, parameters: ArmParameters) -> None:
     plant = bench.plant
     if isinstance(plant, MuJoCoPlant):
         plant.become(parameters)
-    elif isinstance(plant, Arm) and plant.parameters != parameters:
-        bench.plant = Arm(parameters)
-        bench.plant.reset(bench.angles)
+    else:
+        bench.become(parameters)
 
 
 def grown_friction(arm: ArmParameters, factor: float) -> ArmParameters:

@@ -19,6 +19,7 @@
 #include "arm/potentiometer.h"
 #include "arm/rigid_body.h"
 #include "bindings.h"
+#include "four.h"
 
 namespace nb = nanobind;
 using namespace nb::literals;
@@ -32,32 +33,16 @@ namespace arm = greywhale::arm;
 
 namespace {
 
-using Four = double[arm::kJoints];
-using InArray = nb::ndarray<const double, nb::shape<arm::kJoints>, nb::c_contig, nb::device::cpu>;
-using In = std::variant<InArray, std::array<double, arm::kJoints>>;  // numpy, or any sequence of four numbers
-using Out = nb::ndarray<nb::numpy, double, nb::shape<arm::kJoints>, nb::c_contig>;
+using greywhale::bind::array_of;
+using greywhale::bind::Copy;
+using greywhale::bind::Four;
+using greywhale::bind::In;
+using greywhale::bind::Out;
+using greywhale::bind::owned;
 using Matrix = nb::ndarray<nb::numpy, double, nb::shape<arm::kJoints, arm::kJoints>, nb::c_contig>;
 using ActuatorOfOne = arm::Actuator<double>;
 using JointOfOne = arm::Joint<double>;
 using Body = arm::RigidBody<double>;
-
-// A copy of an argument, so that its memory need not outlive the call.
-struct Copy {
-  explicit Copy(const In& in) {
-    std::visit([this](const auto& four) { std::memcpy(values, four.data(), sizeof values); }, in);
-  }
-  Four values;
-};
-
-template <class Result, std::size_t N>
-Result owned(const double (&values)[N], std::initializer_list<std::size_t> shape) {
-  auto copy = std::make_unique<double[]>(N);
-  std::memcpy(copy.get(), values, sizeof values);
-  nb::capsule owner(copy.get(), [](void* p) noexcept { delete[] static_cast<double*>(p); });
-  return Result(copy.release(), shape, owner);
-}
-
-Out array_of(const Four& values) { return owned<Out>(values, {arm::kJoints}); }
 
 // An array of the caller's to fill, for loops of many thousand calls a second; without one a fresh array is made.
 using Writable = nb::ndarray<double, nb::shape<arm::kJoints>, nb::c_contig, nb::device::cpu>;

@@ -12,13 +12,15 @@ import { Store } from "../src/parts/storage";
 import { keepEeprom, keptEeprom } from "../src/sources/in_page/eeprom";
 import { BenchLoop } from "../src/sources/in_page/bench_loop";
 import { BenchModule } from "../src/sources/in_page/module";
+import { readImage } from "../src/sources/serial/flash/image";
 
 const site = process.env["SITE"] ?? "";
 const data = JSON.parse(readFileSync(join(site, "bench.json"), "utf8")) as BenchData;
+const { memory: firmware } = readImage({ name: "mega.hex", text: readFileSync(join(site, "mega.hex"), "utf8") });
 
 /** A life and what its board has said. */
 async function rig() {
-  const module = await BenchModule.load(readFileSync(join(site, "bench.wasm")), data.arm);
+  const module = await BenchModule.load(readFileSync(join(site, "bench.wasm")), data.numbers, data.bootloader, firmware);
   const life = new BenchLoop(module, data);
   const decoder = new FrameDecoder();
   const samples: Sample[] = [];
@@ -82,7 +84,7 @@ test("power, supply and emergency stop do what they say", async () => {
   life.change({ power: false });
   pass(50);
   life.change({ power: true });
-  pass(100);
+  pass(1000); // the bootloader waits for a host at first
   assert.ok(life.restarted());
   assert.equal(hellos(), before + 1);
   life.change({ fault: "brown-out" });
@@ -143,7 +145,7 @@ const FORBIDDEN = [new Store(() => null), new Store(() => { throw new Error("den
 
 test("a browser keeps the board's memory; what is damaged is told and set aside", () => {
   const kept = new Map<string, string>();
-  const content = Uint8Array.from({ length: 1024 }, (_, place) => place * 7);
+  const content = Uint8Array.from({ length: 4096 }, (_, place) => place * 7);
   assert.deepEqual(keptEeprom(storage(kept)), { content: null, sentence: "" });
   assert.ok(keepEeprom(storage(kept), content));
   assert.deepEqual(keptEeprom(storage(kept)).content, content);
@@ -157,9 +159,9 @@ test("a browser keeps the board's memory; what is damaged is told and set aside"
 });
 
 test("a full store loses nothing, and a forbidden one is told", () => {
-  const content = new Uint8Array(1024);
+  const content = new Uint8Array(4096);
   for (const [room, sentence] of [[9, "is set aside as"], [1, "stays until the board stores anew"]] as const) {
-    const kept = new Map([["greywhale-eeprom", "damaged"], ["other", "x".repeat(3000)]]);
+    const kept = new Map([["greywhale-eeprom-mega", "damaged"], ["other", "x".repeat(3000)]]);
     const full = storage(kept, [...kept].flat().join("").length + room);
     const found = keptEeprom(full);
     assert.ok(found.content === null && found.sentence.includes(sentence));

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from greywhale.arm import Arm, Potentiometers
+from greywhale._native import Board, BoardError
 from greywhale.base.errors import BAD_USAGE, UserError
 from greywhale.board.flash import packaged_image
 from greywhale.files.arm import load_arm
@@ -53,11 +53,8 @@ def wiring_of(board: str) -> Wiring:
 
 def build_board(options: BenchOptions) -> Any:
     """A powered board: bootloader, firmware unless blank, EEPROM content."""
-    try:
-        from greywhale_sim._board import Board, BoardError
-        from greywhale_sim.programs import load_hex
-    except ImportError as error:
-        raise UserError(f"the simulated board is not built ({error}); run: make setup") from None
+    from greywhale_sim.programs import load_hex  # pyelftools takes a while
+
     if options.blank and options.firmware is not None:
         raise UserError("a blank board has no firmware: leave out --blank or --firmware.", BAD_USAGE)
     wiring = wiring_of(options.board)
@@ -78,21 +75,25 @@ def build_board(options: BenchOptions) -> Any:
     return board
 
 
-def build_bench(options: BenchOptions, plant: Plant | None = None) -> Bench:
-    """The whole bench; `plant` may be any object with step(voltages, dt) -> angles instead of the built-in arm."""
+def build_bench(options: BenchOptions, plant: Plant | None = None, leader: LeaderPlayer | None = None) -> Bench:
+    """The whole bench; `plant` may be any object with step(voltages, dt) -> angles instead of the built-in arm, and
+    another `leader` may play a motion of their own.
+    """
     parameters = load_arm(options.arm or "default")
-    motion = human_reaches(options.seed) if options.leader is None else load_leader(options.leader)
+    if leader is None:
+        motion = human_reaches(options.seed) if options.leader is None else load_leader(options.leader)
+        leader = LeaderPlayer(motion, SLICE_S, joints=parameters.joints_in_use)
     bench = Bench(
         board=build_board(options),
         wiring=wiring_of(options.board),
-        plant=Arm(parameters, seed=options.seed) if plant is None else plant,
-        leader=LeaderPlayer(motion, SLICE_S, joints=parameters.joints_in_use),
-        leader_pots=Potentiometers(parameters.leader_pots, options.seed),
-        follower_pots=Potentiometers(parameters.follower_pots, options.seed + 1),
+        plant=parameters if plant is None else plant,
+        leader=leader,
+        pots=(parameters.leader_pots, parameters.follower_pots),
         supply_v=parameters.drive.supply,
         chip=chip_of(options.driver),
         emf=np.array([motor.torque_per_volt * motor.resistance for motor in map(parameters.actuator, range(4))]),
         joints=parameters.joints_in_use,
+        seed=options.seed,
     )
     for fault in options.faults:
         inject(bench, fault)

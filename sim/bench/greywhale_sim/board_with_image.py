@@ -11,9 +11,9 @@ from typing import Any
 
 import numpy as np
 
+from greywhale._native import Board
 from greywhale.protocol import frames, schema
 from greywhale.protocol.declared import Reply_co, Request
-from greywhale_sim._board import Board
 from greywhale_sim.assemble import BUILDS
 from greywhale_sim.programs import load_elf
 from greywhale_sim.symbols import read_symbols

@@ -14,9 +14,8 @@ from greywhale.base.errors import UserError
 from greywhale.files.leader import load_leader
 from greywhale.loop import human_reaches
 from greywhale_sim import faults, person_commands
-from greywhale_sim.bench import CLOCK_HZ, stops_of
+from greywhale_sim.bench import CLOCK_HZ
 from greywhale_sim.faults import POTS
-from greywhale_sim.pins_seen import PinsSeen
 from greywhale_sim.server import Server
 
 CommandAnswer = dict[str, Any]
@@ -94,18 +93,17 @@ def hand(server: Server, side: str, *words: str) -> CommandAnswer:
 
 
 def pot(server: Server, side: str, joint: str, state: str) -> CommandAnswer:
-    pots = {"leader": server.bench.leader_pots, "follower": server.bench.follower_pots}
-    if side not in pots or not 0 <= int(joint) <= 3 or state not in (*_WIRINGS, *_POT_FAULTS):
+    if side not in ("leader", "follower") or not 0 <= int(joint) <= 3 or state not in (*_WIRINGS, *_POT_FAULTS):
         raise ValueError
     number = int(joint) + (4 if side == "follower" else 0)
-    pots[side].set_wiring(int(joint), _WIRINGS.get(state, arm.Wiring.CONNECTED))  # type: ignore[attr-defined]
+    server.bench.set_wiring(number, _WIRINGS.get(state, arm.Wiring.CONNECTED))
     server.bench.let_float(number, state == "floating")
-    server.bench.pot_faults.inject(number, _POT_FAULTS.get(state))
+    server.bench.inject(number, _POT_FAULTS.get(state))
     return {"pot": f"{side}_{joint}", "state": state}
 
 
 def swap(server: Server, one: str, other: str) -> CommandAnswer:
-    server.bench.pot_faults.swap(POTS.index(one), POTS.index(other))
+    server.bench.swap(POTS.index(one), POTS.index(other))
     return {"swapped": [one, other]}
 
 
@@ -116,9 +114,8 @@ def mistake(server: Server, words: str) -> CommandAnswer:
 
 
 def pins(server: Server) -> CommandAnswer:
-    seen, server.bench.seen = server.bench.seen, PinsSeen()
-    longest = seen.longest(server.board.cycle) / CLOCK_HZ
-    return {"duties": [round(duty, 5) for duty in seen.duties], "longest_on_s": round(longest, 6)}
+    duties, longest = server.bench.take_pins_seen(server.board.cycle)
+    return {"duties": [round(duty, 5) for duty in duties], "longest_on_s": round(longest / CLOCK_HZ, 6)}
 
 
 def motor(server: Server, joint: str, state: str) -> CommandAnswer:
@@ -207,7 +204,7 @@ def push(server: Server, joint: str, torque: str) -> CommandAnswer:
 def controls(server: Server) -> CommandAnswer:
     """The things that can be changed while a bench runs, each with its range and its value now."""
     bench = server.bench
-    low, high = (np.clip(ends, -FARTHEST_RAD, FARTHEST_RAD).tolist() for ends in stops_of(bench.plant))
+    low, high = (np.clip(ends, -FARTHEST_RAD, FARTHEST_RAD).tolist() for ends in bench.stops)
     found: CommandAnswer = {
         "leader": {"minimum": low, "maximum": high},
         "faults": [

@@ -7,14 +7,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Literal
 
-from greywhale.arm import PotFault, PotFaults, Wiring
+from greywhale.arm import PotFault, Wiring
 from greywhale.base.errors import UserError
 from greywhale.board.refusal import pot_name
 from greywhale.protocol.firmware import JOINTS
 from greywhale_sim.bench import Bench
-from greywhale_sim.board_supply import SharedSupply
 
 POTS = tuple(f"{side}{joint}" for side in ("leader", "follower") for joint in range(JOINTS))
 WHERE = {"pot": POTS, "motor": tuple(map(str, range(JOINTS))), "arm": ("",)}
@@ -23,10 +22,13 @@ WEAK_GAIN = 0.2  # of a healthy motor's torque
 OTHER_SUPPLY_V = 24.0  # of a power supply taken by mistake
 NOTHING = "none"
 
+Call = tuple[str | int | float | PotFault | Wiring, ...]  # a method of the bench by its name, and what it is given
+Calls = tuple[Call, ...]
+
 
 @dataclass(frozen=True)
 class Fault:
-    """A fault: `inject` does it to a bench at the potentiometer 0..7 or the joint 0..3 in question.
+    """A fault: `calls` of a bench's methods do it at the potentiometer 0..7 or the joint 0..3 in question.
 
     `verb` then finds it, with words that match the regular expression `words`. In it stand <pot>, <other>, <first>,
     <second> for potentiometers and <joint>, <near>, <low>, <high> for joints; `near` is the one with which something is
@@ -38,7 +40,7 @@ class Fault:
     says: str
     verb: Literal["calibrate", "doctor"]
     words: str
-    inject: Callable[[Bench, int], None]
+    calls: Callable[[int], Calls]
     ends: Literal["refused", "mended", "noted"] = "refused"
     options: tuple[str, ...] = ()
 
@@ -61,52 +63,37 @@ def _near(number: int) -> int:
     return number - number % JOINTS + (number + 1) % JOINTS
 
 
-def _at_pot(kind: PotFault) -> Callable[[Bench, int], None]:
-    return lambda bench, pot: bench.pot_faults.inject(pot, kind)
+def _at_pot(kind: PotFault) -> Callable[[int], Calls]:
+    return lambda pot: (("inject", pot, kind),)
 
 
-def _wire(wiring: Any) -> Callable[[Bench, int], None]:
-    def rewire(bench: Bench, pot: int) -> None:
-        bank: Any = bench.leader_pots if pot < JOINTS else bench.follower_pots
-        bank.set_wiring(pot % JOINTS, wiring)
-
-    return rewire
+def _wire(wiring: Wiring) -> Callable[[int], Calls]:
+    return lambda pot: (("set_wiring", pot, wiring),)
 
 
-def _motor(gain: float) -> Callable[[Bench, int], None]:
-    return lambda bench, joint: bench.wire_motor(joint, gain, joint)
+def _motor(gain: float) -> Callable[[int], Calls]:
+    return lambda joint: (("wire_motor", joint, gain, joint),)
 
 
-def _swap_motors(bench: Bench, joint: int) -> None:
+def _swap_motors(joint: int) -> Calls:
     near = (joint + 1) % JOINTS
-    bench.wire_motor(joint, 1.0, near)
-    bench.wire_motor(near, 1.0, joint)
+    return (("wire_motor", joint, 1.0, near), ("wire_motor", near, 1.0, joint))
 
 
-def _swap_arms(bench: Bench, number: int) -> None:
-    for joint in range(JOINTS):
-        bench.pot_faults.swap(joint, joint + JOINTS)
-
-
-def _cut_supply(bench: Bench, number: int) -> None:
-    for joint in range(JOINTS):
-        bench.wire_motor(joint, 0.0, joint)
-
-
-def _share_supply(bench: Bench, number: int) -> None:
-    bench.shared_supply = SharedSupply(bench.board)
+def _at_every_joint(*calls: Callable[[int], Call]) -> Callable[[int], Calls]:
+    return lambda number: tuple(call(joint) for joint in range(JOINTS) for call in calls)
 
 
 FAULTS = (
     Fault(
         "pot-swapped", "pot", "the wires of this potentiometer and of the next joint's are exchanged", "calibrate",
         "<first> reads .* and did not move, but .<second> did: their wires are swapped",
-        lambda bench, pot: bench.pot_faults.swap(pot, _near(pot)),
+        lambda pot: (("swap", pot, _near(pot)),),
     ),
     Fault(
         "arms-swapped", "arm", "the leader's plug is where the follower's belongs, and the other way round",
         "calibrate", "eader potentiometer 0 reads .* but follower potentiometer 0 did: the two arms are swapped",
-        _swap_arms,
+        _at_every_joint(lambda joint: ("swap", joint, joint + JOINTS)),
     ),
     Fault(
         "pot-reversed", "pot", "the two ends of the track are exchanged, so that it reads the other way", "calibrate",
@@ -122,7 +109,7 @@ FAULTS = (
     ),
     Fault(
         "pot-floating", "pot", "the wiper's wire is off, and nothing pulls the pin down", "doctor",
-        "These read alike: .*<pot>", lambda bench, pot: bench.let_float(pot, True),
+        "These read alike: .*<pot>", lambda pot: (("let_float", pot, True),),
     ),
     Fault(
         "pot-shorted", "pot", "the wiper's wire touches 5 V", "doctor",
@@ -130,7 +117,7 @@ FAULTS = (
     ),
     Fault(
         "pot-touching", "pot", "the wiper's wire touches that of the next joint", "doctor",
-        "These read alike: .<first> and .<second>", lambda bench, pot: bench.touch(pot, _near(pot)),
+        "These read alike: .<first> and .<second>", lambda pot: (("touch", pot, _near(pot)),),
     ),
     Fault(
         "pot-loose", "pot", "the wiper's wire is off for 2 ms again and again", "doctor",
@@ -174,16 +161,17 @@ FAULTS = (
     ),
     Fault(
         "no-supply", "arm", "the motors' supply is off", "calibrate",
-        "the motor of joint 0 did not move it with .* check that the motors' supply is on", _cut_supply,
+        "the motor of joint 0 did not move it with .* check that the motors' supply is on",
+        _at_every_joint(lambda joint: ("wire_motor", joint, 0.0, joint)),
     ),
     Fault(
         "wrong-supply", "arm", f"the motors' supply has {OTHER_SUPPLY_V:g} V, and the board counts on another one",
         "doctor", "The board counts on 15 V for the motors, not 24 V",
-        lambda bench, number: bench.change_supply(OTHER_SUPPLY_V), options=("--supply", f"{OTHER_SUPPLY_V:g}"),
+        lambda number: (("change_supply", OTHER_SUPPLY_V),), options=("--supply", f"{OTHER_SUPPLY_V:g}"),
     ),
     Fault(
         "brown-out", "arm", "the board lives on the motors' supply, which sinks when a motor draws", "calibrate",
-        "restarted while the motor of joint 0 was driven", _share_supply,
+        "restarted while the motor of joint 0 was driven", lambda number: (("share_supply",),),
     ),
 )  # fmt: skip
 BY_NAME = {fault.name: fault for fault in FAULTS}
@@ -193,7 +181,7 @@ def inject(bench: Bench, words: str) -> str:
     """Stage NAME or NAME:PLACE, or take all back (`none`); a sentence says what was done. Raises UserError."""
     name, _, where = words.partition(":")
     if words == NOTHING:
-        mend(bench)
+        bench.mend()
         return "every mistake is taken back."
     if name not in BY_NAME:
         raise UserError(f'"{name}" is no mistake; there are: {", ".join(BY_NAME)}, and {NOTHING}.', 2)
@@ -203,21 +191,9 @@ def inject(bench: Bench, words: str) -> str:
         places = WHERE[fault.on]
         remedy = f"say {name}:{places[0]} to {name}:{places[-1]}" if places[0] else f"say {name} alone"
         raise UserError(f'"{where}" is no place for {name}; {remedy}.', 2)
-    fault.inject(bench, WHERE[fault.on].index(place))
+    for method, *given in fault.calls(WHERE[fault.on].index(place)):
+        getattr(bench, str(method))(*given)
     return f"{place}{': ' if place else ''}{fault.says}."
-
-
-def mend(bench: Bench) -> None:
-    """Wire everything rightly again."""
-    bench.pot_faults = PotFaults()
-    bench.board.set_joined(0, 1)
-    for pot in range(len(POTS)):
-        _wire(Wiring.CONNECTED)(bench, pot)
-    bench.connect_all()
-    bench.change_supply(bench.own_supply_v)
-    if bench.shared_supply is not None:
-        bench.shared_supply.mend()
-        bench.shared_supply = None
 
 
 def listed() -> str:

@@ -9,8 +9,8 @@ from pathlib import Path
 from elftools.common.exceptions import ELFError
 from elftools.elf.elffile import ELFFile
 
+from greywhale._native import Board, BoardError
 from greywhale.board.flash.images import read_pieces
-from greywhale_sim._board import Board, BoardError
 
 FAMILY_BITS = 0x7F  # of an ELF file's flags
 

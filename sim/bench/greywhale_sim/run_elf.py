@@ -14,7 +14,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from greywhale_sim._board import Board, BoardError
+from greywhale._native import Board, BoardError
 from greywhale_sim.programs import load_elf
 
 CYCLES_PER_S = 16_000_000

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from elftools.elf.sections import SymbolTableSection
 
-from greywhale_sim._board import BoardError
+from greywhale._native import BoardError
 from greywhale_sim.programs import opened_elf
 
 DATA_BASE = 0x800000  # the data space of avr-gcc's linker begins here; flash begins at 0

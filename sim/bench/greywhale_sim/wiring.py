@@ -9,6 +9,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+from greywhale import _native
+
 BOOTLOADERS = Path(__file__).resolve().parent / "bootloaders"  # their source is in sim/bootloaders
 
 
@@ -20,6 +22,10 @@ class Pin:
     port: str
     bit: int
 
+    @property
+    def native(self) -> tuple[str, int]:
+        return self.port, self.bit
+
 
 @dataclass(frozen=True)
 class Pwm:
@@ -28,6 +34,10 @@ class Pwm:
     arduino: str
     timer: int
     channel: str
+
+    @property
+    def native(self) -> tuple[int, str]:
+        return self.timer, self.channel
 
 
 @dataclass(frozen=True)
@@ -55,6 +65,21 @@ class Wiring:
     led: Pin
     estop: Pin  # a button to ground, optional; the pin has a pull-up
     clutch: Pin  # a pedal to ground, optional; the pin has a pull-up
+
+    def native(self) -> _native.BenchWiring:
+        """These pins for the bench in C++."""
+        second = [
+            (motor.second_pwm.native, motor.second_direction.native)
+            for motor in self.motors
+            if motor.second_pwm and motor.second_direction
+        ]
+        return _native.BenchWiring(
+            enable=self.enable.native,
+            motors=[(motor.pwm.native, motor.direction.native) for motor in self.motors],
+            second=second or None,
+            estop=self.estop.native,
+            clutch=self.clutch.native,
+        )
 
 
 MEGA = Wiring(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import subprocess
 from pathlib import Path
 
-from greywhale_sim._board import Board
+from greywhale._native import Board
 from greywhale_sim.programs import load_elf
 from greywhale_sim.symbols import read_symbols
 from tools import avr_tool

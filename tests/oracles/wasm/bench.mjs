@@ -1,6 +1,6 @@
 // Runs the module with which a page simulates a bench: `node bench.mjs MODULE` takes a JSON line for each call and
-// answers with one. [name, ...numbers] calls an export; ["put", numbers] and ["send", bytes as hex] fill its buffers;
-// ["run", n] answers what the board said, ["look"] numbers, and ["trace", n] those after each of n slices.
+// answers with one. [name, ...numbers] calls an export; ["put", numbers] and ["fill", bytes as hex] fill its buffers;
+// ["run", n] answers what the board said, ["read_eeprom"] its content, and ["look"] numbers.
 import { readFileSync } from "node:fs";
 import { createInterface } from "node:readline";
 
@@ -11,21 +11,17 @@ const { instance } = await WebAssembly.instantiate(readFileSync(process.argv[2])
 const { memory, ...calls } = instance.exports;
 calls._initialize();
 const numbers = () => new Float64Array(memory.buffer, calls.numbers(), 256);
-const bytes = () => Buffer.from(memory.buffer, calls.bytes(), 4096);
+const bytes = () => Buffer.from(memory.buffer, calls.bytes(), calls.bytes_size());
 
 const special = {
   put: (values) => numbers().set(values),
-  send(hex) {
-    const sent = Buffer.from(hex, "hex");
-    sent.copy(bytes());
-    calls.send(sent.length);
-  },
+  fill: (hex) => Buffer.from(hex, "hex").copy(bytes()),
   run: (slices) => bytes().toString("hex", 0, calls.run(slices)),
+  read_eeprom: () => bytes().toString("hex", 0, calls.read_eeprom()),
   look() {
     calls.look();
-    return Array.from(numbers().subarray(0, 29));
+    return Array.from(numbers().subarray(0, 12));
   },
-  trace: (slices) => Array.from({ length: slices }, () => [calls.run(1), ...special.look(), calls.powered()].slice(1)),
 };
 
 for await (const line of createInterface({ input: process.stdin })) {

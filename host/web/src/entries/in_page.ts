@@ -27,6 +27,7 @@ import { PageBoard } from "../sources/in_page/board";
 import type { BenchData } from "../sources/in_page/messages";
 import { PageTuner, type TunerParts } from "../sources/in_page/tuner";
 import { SerialBoard } from "../sources/serial/board";
+import { readImage } from "../sources/serial/flash/image";
 
 /** The parts that the page is made of. */
 export type Parts = {
@@ -79,8 +80,9 @@ function offerOthers(shell: Shell, docs: string | null): void {
   if (docs) shell.offer(el("a", { href: `${docs}index.html` }, "Documentation"));
 }
 
-async function showBench({ code, data, worker, tuner, docs }: Parts): Promise<void> {
-  const board = new PageBoard(worker, code, data, browserStore);
+async function showBench({ code, data, worker, tuner, firmware, docs }: Parts): Promise<void> {
+  const { memory } = readImage(await firmware("mega"));
+  const board = new PageBoard(worker, code, data, memory, browserStore);
   const session = new Session(board);
   const leaderControl = new LeaderControl(board, session);
   const arm = new ArmView(session, { arm: async () => data.description });

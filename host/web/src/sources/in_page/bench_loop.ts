@@ -8,7 +8,7 @@ import type { BenchModule } from "./module";
 
 const LEASE_MS = 300;
 const RENEW_TICKS = 60;
-const MOST_START_TICKS = 1000;
+const MOST_START_TICKS = 4000; // a bootloader waits for a host at first
 export const SPEED: Range = { minimum: 0.1, maximum: 10, value: 1, step: 0.1 };
 
 const RENEW = encodeFrame(RenewRequest.type, 0, RenewRequest.pack({ lease_ms: LEASE_MS }));
@@ -68,8 +68,8 @@ export class BenchLoop {
     else if ("motion" in wish) this.move(wish.motion);
     else if ("fault" in wish) this.break(wish.fault);
     else if ("power" in wish) this.module.call("power", Number(wish.power));
-    else if ("estop" in wish) this.module.call("estop", Number(wish.estop));
-    else if ("clutch" in wish) this.module.call("clutch", Number(wish.clutch));
+    else if ("estop" in wish) this.module.call("press_estop", Number(wish.estop));
+    else if ("clutch" in wish) this.module.call("press_clutch", Number(wish.clutch));
     else this.size(wish);
   }
 

@@ -9,7 +9,7 @@ import { keepEeprom, keptEeprom } from "./eeprom";
 import { SPEED } from "./bench_loop";
 import type { BenchData, FromBench, ToBench } from "./messages";
 
-const PORT = "firmware and arm in this page, no cycle timing";
+const PORT = "an Arduino Mega and an arm, simulated in this page";
 const RESTARTED = "The board restarted, and its motors are off.";
 const UNPOWERED = "The board has no power.";
 const UNKEPT = "This browser has no room to keep what the board stores; it ends with this page.";
@@ -24,9 +24,9 @@ export class PageBoard implements Board, BenchActions {
   private keptSentence = ""; // of what the browser had kept; told once the board is there
   private unkeptTold = false;
 
-  /** `worker` runs worker.ts, `code` is the module, `store` the browser's own. */
+  /** `worker` runs worker.ts, `code` is the module, `firmware` the board's memory, `store` the browser's own. */
   constructor(
-    private readonly worker: Worker, private readonly code: ArrayBuffer, private readonly data: BenchData,
+    private readonly worker: Worker, private readonly code: ArrayBuffer, private readonly data: BenchData, private readonly firmware: Uint8Array,
     private readonly store: Store,
   ) {
     this.sizes = Object.fromEntries(SIZES.map((size) => [size, this.range(size).value])) as Record<Size, number>;
@@ -38,7 +38,7 @@ export class PageBoard implements Board, BenchActions {
   listen(listener: BoardListener): void {
     this.listener = listener;
     const kept = keptEeprom(this.store);
-    this.tell({ kind: "start", code: this.code, data: this.data, eeprom: kept.content });
+    this.tell({ kind: "start", code: this.code, data: this.data, firmware: this.firmware, eeprom: kept.content });
     this.showVisible();
     this.keptSentence = kept.sentence;
     this.unkeptTold = !this.store.allowed;

@@ -3,8 +3,8 @@
 import type { Store } from "../../parts/storage";
 import { crc32 } from "../../link/crc32";
 
-const KEY = "greywhale-eeprom";
-const BYTES = 1024; // as hal/web has it
+const KEY = "greywhale-eeprom-mega";
+const BYTES = 4096; // of a Mega
 const ASIDE = "greywhale-eeprom-damaged";
 
 export type Kept = { readonly content: Uint8Array | null; readonly sentence: string };

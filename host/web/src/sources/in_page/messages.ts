@@ -5,9 +5,13 @@ import type { ArmDescription, BenchControls, BenchWish, Range } from "../../sess
 /** A call of the module: its export's name, and numbers. */
 export type Call = readonly [name: string, ...given: number[]];
 
-/** As tools/site writes it: the arm, its mistakes, a person's motion. */
+/** A program and the first address of its bytes, which are in base64. */
+export type Program = { readonly address: number; readonly bytes: string };
+
+/** As tools/site writes it: the board, the arm, its mistakes, a person's motion. */
 export type BenchData = {
-  readonly arm: readonly number[]; // as the module takes it
+  readonly bootloader: Program;
+  readonly numbers: readonly number[]; // of the board's wires and of the arm, as the module takes them
   readonly description: ArmDescription;
   readonly leader: BenchControls["leader"];
   readonly supply: Range;
@@ -24,7 +28,7 @@ export type BenchData = {
 };
 
 export type ToBench =
-  | { kind: "start"; code: ArrayBuffer; data: BenchData; eeprom: Uint8Array | null }
+  | { kind: "start"; code: ArrayBuffer; data: BenchData; firmware: Uint8Array; eeprom: Uint8Array | null }
   | { kind: "send"; frame: Uint8Array }
   | { kind: "wish"; id: number; wish: BenchWish }
   | { kind: "visible"; on: boolean } // time stands still for a page that nobody sees

@@ -1,24 +1,26 @@
-// The bench as WebAssembly (sim/web/exports.cpp): firmware, arm, potentiometers, hands. It knows no clock and no page.
+// The bench as WebAssembly (sim/web/exports.cpp): a board with its program, arm, potentiometers, hands. It knows no clock and
+// no page.
 
 import { startCode, type Exports } from "../../parts/web_assembly";
-import type { Call } from "./messages";
+import type { Call, Program } from "./messages";
 
 export const TICK_SLICES = 4; // of 250 us
-const SEED = 1; // of the noise
+const MEGA = 0;
 const NUMBERS = 256;
-const BYTES = 4096;
-const LEADER_AT = 12; // of what `look` shows
+const ERASED = 0xff;
 
 export class BenchModule {
   private constructor(private readonly exports: Exports) {
     this.call("_initialize");
   }
 
-  /** A bench with this arm, its power off. */
-  static async load(code: BufferSource, arm: readonly number[]): Promise<BenchModule> {
+  /** A bench with these numbers of wires and arm, and a board with its bootloader and firmware, its power off. */
+  static async load(code: BufferSource, numbers: readonly number[], bootloader: Program, firmware: Uint8Array): Promise<BenchModule> {
     const module = new BenchModule(await startCode(code, "the simulated bench"));
-    module.numbers().set(arm);
-    module.call("start", SEED);
+    module.numbers().set(numbers);
+    module.call("start", MEGA);
+    module.program(bootloader.address, Uint8Array.from(atob(bootloader.bytes), (letter) => letter.charCodeAt(0)), true);
+    module.write(firmware);
     return module;
   }
 
@@ -32,12 +34,32 @@ export class BenchModule {
   }
 
   private bytes(): Uint8Array {
-    return new Uint8Array(this.exports.memory.buffer, this.call("bytes"), BYTES);
+    return new Uint8Array(this.exports.memory.buffer, this.call("bytes"), this.call("bytes_size"));
   }
 
-  /** The board's EEPROM itself. */
+  private program(address: number, data: Uint8Array, bootloader: boolean): void {
+    this.bytes().set(data);
+    this.call("program", address, data.length, Number(bootloader));
+  }
+
+  /** Writes a firmware from address 0 on, piece by piece, without what is erased memory. */
+  private write(memory: Uint8Array): void {
+    const most = this.call("bytes_size");
+    for (let at = 0; at < memory.length; at += most) {
+      const piece = memory.subarray(at, at + most);
+      if (piece.some((byte) => byte !== ERASED)) this.program(at, piece, false);
+    }
+  }
+
+  /** The content of the board's EEPROM. */
   eeprom(): Uint8Array {
-    return new Uint8Array(this.exports.memory.buffer, this.call("eeprom"), this.call("eeprom_size"));
+    return this.bytes().slice(0, this.call("read_eeprom"));
+  }
+
+  /** Gives the board's EEPROM a content, which has its size. */
+  setEeprom(content: Uint8Array): void {
+    this.bytes().set(content);
+    this.call("write_eeprom", content.length);
   }
 
   /** Lets a tick pass; what the board said, in the module's memory until the next call. */
@@ -60,6 +82,6 @@ export class BenchModule {
   /** The angles of the leader arm, rad. */
   leader(): number[] {
     this.call("look");
-    return Array.from(this.numbers().subarray(LEADER_AT, LEADER_AT + 4));
+    return Array.from(this.numbers().subarray(0, 4));
   }
 }

@@ -23,7 +23,7 @@ class Bench {
   private readonly timer = setInterval(() => this.guard(() => this.turn()), TURN_MS);
 
   constructor(private readonly module: BenchModule, { data, eeprom }: Extract<ToBench, { kind: "start" }>) {
-    if (eeprom) module.eeprom().set(eeprom);
+    if (eeprom) module.setEeprom(eeprom);
     this.loop = new BenchLoop(module, data);
     this.pass(this.loop.start().slice()); // by its hello, the page learns what the board stores
     this.writes = module.call("eeprom_writes");
@@ -66,6 +66,7 @@ class Bench {
     }
     const said: Uint8Array[] = [];
     for (let left = this.clock.due(performance.now(), this.loop.speed); left; left--) said.push(this.loop.tick().slice());
+    if (this.module.call("crashed")) throw new Error("the program on its board has crashed");
     const size = said.reduce((sum, piece) => sum + piece.length, 0);
     this.keepEeprom(); // before the board can say that it has stored something
     if (this.loop.restarted()) page.postMessage({ kind: "restarted" });
@@ -85,7 +86,7 @@ class Bench {
     const writes = this.module.call("eeprom_writes");
     if (writes === this.writes) return;
     this.writes = writes;
-    page.postMessage({ kind: "eeprom", content: this.module.eeprom().slice() });
+    page.postMessage({ kind: "eeprom", content: this.module.eeprom() });
   }
 
   private guard(act: () => void): void {
@@ -107,7 +108,8 @@ let bench: Bench | null = null;
 
 page.addEventListener("message", ({ data: message }) => {
   if (message.kind !== "start") return bench?.hear(message);
-  BenchModule.load(message.code, message.data.arm).then(
+  const { code, data, firmware } = message;
+  BenchModule.load(code, data.numbers, data.bootloader, firmware).then(
     (module) => {
       bench = new Bench(module, message);
       page.postMessage({ kind: "ready" });

@@ -15,7 +15,8 @@ export function angleAt(limits: Limits, joint: number, share: number): number {
 
 export function shareOf(limits: Limits, joint: number, angle: number): number {
   const low = limits.minimum[joint]!;
-  return within((angle - low) / (limits.maximum[joint]! - low));
+  const width = limits.maximum[joint]! - low;
+  return width > 0 ? within((angle - low) / width) : 0.5; // no joint there
 }
 
 /** The place of a pointer in a picture: shares from its left and from its bottom. */

@@ -1,4 +1,4 @@
-// The Python module greywhale_sim._board.
+// Binds sim/board.
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/pair.h>
@@ -7,56 +7,21 @@
 
 #include <algorithm>
 
-#include "board.h"
-#include "error.h"
+#include "bindings.h"
+#include "board/board.h"
+#include "board/error.h"
+#include "py_board.h"
 
 namespace nb = nanobind;
 using namespace nb::literals;
 
 namespace {
 
-using board::Board;
 using board::BoardError;
-using Millivolts = nb::ndarray<const double, nb::shape<board::Adc::input_count>, nb::c_contig, nb::device::cpu>;
+using greywhale::bind::PyBoard;
 
 nb::bytes to_bytes(const std::string& text) { return nb::bytes(text.data(), text.size()); }
 std::string to_string(const nb::bytes& bytes) { return {bytes.c_str(), bytes.size()}; }
-
-// A Board with the array that outputs() returns each time.
-class PyBoard : public Board {
- public:
-  using Board::Board;
-
-  nb::object outputs() {
-    if (!values_ || size_ != output_count()) {
-      size_ = output_count();
-      values_ = new double[size_];
-      nb::capsule owner(values_, [](void* values) noexcept { delete[] static_cast<double*>(values); });
-      array_ = nb::cast(nb::ndarray<nb::numpy, double, nb::ndim<1>>(values_, {size_}, owner));
-    }
-    read_outputs(values_);
-    return array_;
-  }
-
-  int run(uint64_t until) {
-    // Letting other threads run is worth its cost for long runs only; the bench makes thousands of short ones.
-    constexpr uint64_t long_run = 1000000;
-    if (until < cycle() + long_run) return static_cast<int>(run_until(until));
-    nb::gil_scoped_release release;
-    return static_cast<int>(run_until(until));
-  }
-
-  void set_millivolts(const Millivolts& values) {
-    std::array<double, board::Adc::input_count> millivolts;
-    std::copy_n(values.data(), millivolts.size(), millivolts.begin());
-    adc().set_millivolts(millivolts);
-  }
-
- private:
-  double* values_ = nullptr;  // owned by array_
-  size_t size_ = 0;
-  nb::object array_;
-};
 
 struct InterruptTimes {
   uint64_t count, shortest, longest;
@@ -211,8 +176,7 @@ void bind_serial(BoardClass& c) {
 
 }  // namespace
 
-NB_MODULE(_board, m) {
-  m.doc() = "The simulated Arduino.";
+void bind_board(nb::module_& m) {
   nb::exception<BoardError>(m, "BoardError", PyExc_ValueError);
   bind_stats(m);
   BoardClass board(m, "Board",
