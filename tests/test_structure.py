@@ -29,8 +29,8 @@ PAGE_ROOMS = ["link", "parts", "session", "files", "tuner", "sources", "views", 
 UNKNOWN_TO_VIEWS = {"sources", "tuner"}
 # A rule that two languages hold is written twice: these files of the page repeat one of Python's, and no others may.
 TWINS = {
-    *("files/controller_file.ts", "files/parameter_file.ts", "session/law.ts", "sources/serial/flash/image.ts"),
-    *("sources/serial/flash/targets.ts", "tuner/costs.ts", "tuner/search.ts", "tuner/space.ts", "tuner/unrest.ts"),
+    *("session/law.ts", "sources/serial/flash/image.ts", "sources/serial/flash/targets.ts"),
+    *("tuner/costs.ts", "tuner/search.ts", "tuner/space.ts", "tuner/unrest.ts"),
     *("tuner/wolf_whale.ts", "views/calibrate/motors.ts", "views/calibrate/solve.ts", "views/calibrate/sweep.ts"),
     "views/calibrate/words.ts",
 }

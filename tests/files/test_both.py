@@ -14,6 +14,7 @@ import pytest
 from greywhale.base.errors import UserError
 from greywhale.board.flash.images import read_image
 from greywhale.files import controller, parameter_file
+from tools.generate.files import main
 
 BOTH = Path(__file__).with_name("both")
 TOLD: dict[str, str] = json.loads((BOTH / "told.json").read_text("utf-8"))
@@ -22,6 +23,11 @@ READERS: dict[str, Callable[[Path], object]] = {
     "parameters": parameter_file.load,
     "image": read_image,
 }
+
+
+def test_the_page_has_the_hosts_rules() -> None:
+    """If not: `python -m tools.generate`."""
+    assert main(["--check"]) == 0
 
 
 def test_each_file_has_its_words() -> None:

@@ -6,7 +6,6 @@ those of the exported arm.
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
 from html import escape
@@ -17,6 +16,7 @@ from greywhale.arm.parameters import JOINT_NAMES
 from greywhale.base.types import Floats
 from greywhale.board.calibrate.words import POSITIVE_WAYS
 from tools import ROOT
+from tools.generate.current import keep_current
 
 PICTURE = ROOT / "docs" / "images" / "joints-positive.svg"
 STYLE = 'font-family="DejaVu Sans, Arial, sans-serif" font-size="14"'
@@ -121,10 +121,4 @@ def _draw_joint(drawn: Picture, view: View, centre: Point) -> None:
 
 def main(arguments: list[str]) -> int:
     """With `--check` nothing is written; 1 where the picture is stale."""
-    picture = draw().svg()
-    if arguments != ["--check"]:
-        PICTURE.write_text(picture, encoding="utf-8")
-    elif PICTURE.read_text(encoding="utf-8") != picture:
-        print(f"{PICTURE.relative_to(ROOT)} is stale; run `python -m tools.generate`.", file=sys.stderr)
-        return 1
-    return 0
+    return keep_current({str(PICTURE.relative_to(ROOT)): draw().svg()}, "--check" in arguments)

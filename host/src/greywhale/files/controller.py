@@ -10,10 +10,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from operator import index
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, Self
+from typing import Annotated, Any, ClassVar
 
-from pydantic import Field, field_validator, model_validator
+from pydantic import Field
 
+from greywhale.base import sentences
 from greywhale.base.errors import UserError
 from greywhale.base.formats import toml_file, toml_text
 from greywhale.base.formats.kinds import Kind
@@ -30,9 +31,25 @@ NARROWEST_FLANK = 0.01
 GAINS = ("kp", "kd", "ki", "ku")
 OF_A_JOINT = ("speed_per_volt", "time_constant", "breakaway_volts")
 OF_THE_ARM = ("gravity_1", "gravity_12", "gravity_2")
+
+
+def stored_as(key: str) -> tuple[str, float]:
+    """The parameter that keeps a key of the file, without its joint, and how many of its units one of the file's is."""
+    return ("ku_mv", 1000.0) if key == "ku" else (key.lower(), 1.0)
+
+
+def _as_stored(key: str) -> Any:
+    """The range of a key: that of its parameter."""
+    name, scale = stored_as(key)
+    parameter = schema.PARAMETER_BY_NAME.get(name) or schema.PARAMETER_BY_NAME[f"joint0.{name}"]
+    least, most = (parameter.to_physical(raw) / scale for raw in (parameter.minimum, parameter.maximum))
+    return Field(ge=least, le=most)
+
+
 # Corners left and right of zero.
 Left = Annotated[float, Field(ge=-1.0, le=-NARROWEST_FLANK)]
 Right = Annotated[float, Field(ge=NARROWEST_FLANK, le=1.0)]
+StallVolts = Annotated[float, _as_stored("stall_volts")]
 _STALL = schema.PARAMETER_BY_NAME["stall_volts"]
 
 
@@ -55,29 +72,19 @@ class JointController(toml_file.Table):
     The change of error spans `ce_ticks` control periods; 1 where a file does not say.
     """
 
-    kp: float
-    kd: float
-    ki: float
-    ku: float
-    ce_ticks: int = 1
+    kp: Annotated[float, _as_stored("kp")]
+    kd: Annotated[float, _as_stored("kd")]
+    ki: Annotated[float, _as_stored("ki")]
+    ku: Annotated[float, _as_stored("ku")]
+    ce_ticks: Annotated[int, _as_stored("ce_ticks")] = 1
     sets: Sets
-
-    @model_validator(mode="after")
-    def _fits_the_firmware(self) -> Self:
-        for key, parameter, value in self.parameters():
-            lowest, highest = (parameter.to_physical(raw) for raw in (parameter.minimum, parameter.maximum))
-            if not lowest <= value <= highest:
-                scale, given = (1000.0, self.ku) if key == "ku" else (1.0, value)
-                raise ValueError(f"{key} is {given:g}, but it must lie within {lowest / scale:g}..{highest / scale:g}")
-        return self
 
     def parameters(self, joint: int = 0) -> list[tuple[str, Parameter, float]]:
         """Key in the file, parameter of the board and value in the parameter's unit."""
-        gains = {"kp": self.kp, "kd": self.kd, "ki": self.ki, "ku": 1000.0 * self.ku, "ce_ticks": self.ce_ticks}
-        values = gains | self.sets.model_dump()
+        values = self.model_dump(exclude={"sets"}) | self.sets.model_dump()
+        stored = [(key, value, *stored_as(key)) for key, value in values.items()]
         return [
-            (key, schema.PARAMETER_BY_NAME[f"joint{joint}.{'ku_mv' if key == 'ku' else key.lower()}"], value)
-            for key, value in values.items()
+            (key, schema.PARAMETER_BY_NAME[f"joint{joint}.{name}"], scale * value) for key, value, name, scale in stored
         ]
 
 
@@ -108,19 +115,10 @@ class Controller(toml_file.Table):
     kinds: ClassVar[tuple[Kind, ...]] = (Kind.CONTROLLER,)
 
     source: str = ""
-    stall_volts: float | None = None  # V: the board's own stays where the file says nothing
+    stall_volts: StallVolts | None = None  # the board's own stays where the file says nothing
     travel: Travel | None = None  # the same
     joint: tuple[JointController, ...] = Field(min_length=JOINTS, max_length=JOINTS)
     tuning: dict[str, Any] | None = None  # how `greywhale tune` found it and what it expects; no board gets it
-
-    @field_validator("stall_volts")
-    @classmethod
-    def _fits_the_parameter(cls, volts: float | None) -> float | None:
-        if volts is not None:
-            least, most = (_STALL.to_physical(raw) for raw in (_STALL.minimum, _STALL.maximum))
-            if not least <= volts <= most:
-                raise ValueError(f"it must lie within {least:g}..{most:g} V")
-        return volts
 
     def raw_values(self) -> dict[str, int]:
         """Parameter name -> raw value, for everything that a controller file says."""
@@ -152,11 +150,10 @@ def load(path: str | Path) -> Controller:
     for number, joint in enumerate(controller.joint):
         for key, parameter, value in joint.parameters(number):
             if value != 0.0 and parameter.to_raw(value) == 0:
-                scale = 1000.0 if key == "ku" else 1.0
-                raise UserError(
-                    f"{path}: joint[{number}].{key} is {value / scale:g}, which the board would store as 0; "
-                    f"give 0, or at least {parameter.lsb / scale:g}."
-                )
+                _, scale = stored_as(key)
+                shown, least = f"{value / scale:g}", f"{parameter.lsb / scale:g}"
+                words = sentences.TOO_SMALL_IN_FILE.format(key=f"joint[{number}].{key}", value=shown, least=least)
+                raise UserError(f"{path}: {words}")
     return controller
 
 
@@ -206,9 +203,9 @@ def _in_file(joint: int, row: Iterable[int]) -> dict[str, float]:
     raw = dict(zip(CONTROLLER_COLUMNS, row, strict=True))
     found = {}
     for key in (*Sets.model_fields, *GAINS, "ce_ticks"):
-        name = "ku_mv" if key == "ku" else key.lower()
+        name, scale = stored_as(key)
         parameter = schema.PARAMETER_BY_NAME[f"joint{joint}.{name}"]
         value = index(raw[name])
         parameter.check_raw(value)
-        found[key] = value if key == "ce_ticks" else parameter.to_physical(value) / (1000.0 if key == "ku" else 1.0)
+        found[key] = value if key == "ce_ticks" else parameter.to_physical(value) / scale
     return found

@@ -6,6 +6,7 @@ import json
 from collections.abc import Mapping
 from pathlib import Path
 
+from greywhale.base import sentences
 from greywhale.base.errors import UserError, cut
 from greywhale.base.formats import toml_file
 from greywhale.base.formats.kinds import Kind, refuse_other_kind
@@ -47,7 +48,7 @@ def load_stated(path: str | Path) -> dict[str, int]:
     if unknown:
         advice = toml_file.advice(unknown[0], schema.PARAMETER_BY_NAME)
         key = toml_file.key_path(unknown[:1])
-        raise UserError(f"{path}: unknown key {key}; {advice}.")
+        raise UserError(f"{path}: {sentences.UNKNOWN_KEY.format(key=key, advice=advice)}.")
     layout = max((schema.PARAMETER_BY_NAME[name].since for name in found), default=1)
     stated = {
         parameter.name: _raw(parameter, found, path) for parameter in schema.PARAMETERS if parameter.since <= layout
@@ -63,10 +64,11 @@ def not_in(stated: Mapping[str, int]) -> tuple[str, ...]:
 
 def _raw(parameter: Parameter, found: Mapping[str, object], path: str | Path) -> int:
     if parameter.name not in found:
-        raise UserError(f"{path}: {parameter.name} is missing; a parameter file holds all of them.")
+        raise UserError(f"{path}: {sentences.MISSING_PARAMETER.format(name=parameter.name)}")
     value = found[parameter.name]
     if isinstance(value, bool) or not isinstance(value, int | float):
-        raise UserError(f"{path}: {parameter.name} is {cut(json.dumps(value, default=str))}, but it must be a number.")
+        shown = cut(json.dumps(value, default=str))
+        raise UserError(f"{path}: {sentences.NO_NUMBER.format(name=parameter.name, value=shown)}")
     try:
         return parameter.to_raw_as_given(value)
     except UserError as error:

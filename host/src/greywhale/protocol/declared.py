@@ -13,6 +13,7 @@ from dataclasses import dataclass, fields
 from enum import IntEnum
 from typing import ClassVar, Protocol, Self, TypeVar
 
+from greywhale.base import sentences
 from greywhale.base.errors import BAD_USAGE, BadUsage, UserError
 
 CRC_START = 0xFFFF
@@ -159,7 +160,8 @@ class Parameter:
     def to_raw(self, physical: float) -> int:
         """The nearest raw value; UserError when it is not finite or out of range."""
         if not math.isfinite(physical):
-            raise BadUsage(f"{self.name} is {physical}, but it must be a finite number; {self._advice()}")
+            words = sentences.PARAMETER_NOT_FINITE
+            raise BadUsage(words.format(name=self.name, value=physical, advice=self._advice()))
         scaled = physical / self.lsb + 0.5
         raw = math.floor(scaled) if math.isfinite(scaled) else _BEYOND
         self._check(raw, physical)
@@ -169,12 +171,10 @@ class Parameter:
         """As to_raw, for a number that a person gave: refused where rounding would change it noticeably."""
         raw = self.to_raw(physical)
         if self.lsb == 1.0 and raw != physical:
-            raise BadUsage(f"{self.name} is {physical:.6g}{self._unit()}, but it must be a whole number.")
+            raise BadUsage(sentences.NOT_WHOLE.format(name=self.name, value=self.shown(physical)))
         if raw == 0 and physical != 0.0:
-            raise BadUsage(
-                f"{self.name} is {physical:.6g}{self._unit()}, which the board would store as 0; "
-                f"choose 0, or a size from {self.lsb:.6g}{self._unit()}."
-            )
+            value, least = self.shown(physical), self.shown(self.lsb)
+            raise BadUsage(sentences.TOO_SMALL.format(name=self.name, value=value, least=least))
         return raw
 
     def check_raw(self, raw: int) -> None:
@@ -183,15 +183,17 @@ class Parameter:
 
     def _check(self, raw: int, physical: float) -> None:
         if not self.minimum <= raw <= self.maximum or (self.nonzero and raw == 0):
-            raise BadUsage(f"{self.name} is {physical:.6g}{self._unit()}, which is out of range; {self._advice()}")
+            value = self.shown(physical)
+            raise BadUsage(sentences.OUT_OF_RANGE.format(name=self.name, value=value, advice=self._advice()))
 
-    def _unit(self) -> str:
-        return f" {self.unit}" if self.unit else ""
+    def shown(self, physical: float) -> str:
+        """A value in words, with its unit."""
+        return f"{physical:.6g} {self.unit}" if self.unit else f"{physical:.6g}"
 
     def _advice(self) -> str:
-        low, high = self.to_physical(self.minimum), self.to_physical(self.maximum)
-        other = ", other than 0" if self.nonzero else ""
-        return f"choose a value from {low:.6g} to {high:.6g}{self._unit()}{other}."
+        words = sentences.CHOOSE_BUT_0 if self.nonzero else sentences.CHOOSE
+        least, most = self.to_physical(self.minimum), self.to_physical(self.maximum)
+        return words.format(least=f"{least:.6g}", most=self.shown(most))
 
 
 class Table:
@@ -230,9 +232,9 @@ class Table:
             other = self.parameters[self._index[f"{parameter.group}{parameter.element}.{parameter.below}"]]
             if raw[parameter.index] >= raw[other.index]:
                 low, high = parameter.to_physical(raw[parameter.index]), other.to_physical(raw[other.index])
+                value, most = f"{low:.6g}", other.shown(high)
                 raise BadUsage(
-                    f"{parameter.name} is {low:.6g} and {other.name} is {high:.6g}{other._unit()}; "
-                    f"choose {parameter.name} below {other.name}."
+                    sentences.NOT_BELOW.format(name=parameter.name, value=value, other=other.name, most=most)
                 )
 
 

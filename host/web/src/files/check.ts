@@ -1,84 +1,89 @@
-// Checks the content of a TOML file against what it should hold; whatever is wrong is one sentence, that of the host.
+// Checks the content of a TOML file against the host's schema; whatever is wrong is one sentence, that of the host.
 
 import { LinkError } from "../link/declared";
+import * as rules from "./rules";
+import type { Schema } from "./schema_types";
 import type { Path, Toml, TomlTable } from "./toml_types";
 import { advice, keyPath, quoted, short } from "./words";
 
 type Problem = { readonly path: Path; readonly kind: "unknown" | "count" | "other"; readonly text: string };
 
-/** A check of a value: it names the fault of one that is not as it should be. */
-export type Shape = (value: Toml, path: Path) => Problem[];
-
 export function isTable(value: Toml | undefined): value is TomlTable {
   return typeof value === "object" && !Array.isArray(value) && !(value instanceof Date);
 }
 
-function other(path: Path, value: Toml, words: string): Problem[] {
-  const whole = Array.isArray(value) || isTable(value);
-  const text = !whole ? `${keyPath(path)} is ${quoted(value)}, but ${words}` : path.length ? `${keyPath(path)}: ${words}` : words;
+export function isNumber(value: Toml | undefined): value is number | bigint {
+  return typeof value === "number" || typeof value === "bigint";
+}
+
+const IS: Readonly<Record<string, (value: Toml) => boolean>> = {
+  number: isNumber,
+  integer: (value) => typeof value === "bigint",
+  string: (value) => typeof value === "string",
+  array: Array.isArray,
+  object: isTable,
+};
+
+function other(path: Path, text: string): Problem[] {
   return [{ path, kind: "other", text }];
 }
 
-/** A number, perhaps within bounds that are told as "at least", or within a range that `words` tell. */
-export function number(least = -Infinity, most = Infinity, words = ""): Shape {
-  return (value, path) => {
-    if (typeof value !== "number" && typeof value !== "bigint") return other(path, value, "it should be a valid number");
-    if (value >= least && value <= most) return [];
-    return other(path, value, words || `it must be at least ${short(least)} and at most ${short(most)}`);
-  };
+function problemsOf(value: Toml, schema: Schema, path: Path): Problem[] {
+  const [key, { type }] = [keyPath(path), schema];
+  if (!IS[type]!(value)) {
+    const rule = rules.TYPE_RULES[type as keyof typeof rules.TYPE_RULES];
+    if (!Array.isArray(value) && !isTable(value)) return other(path, rules.wrongValue({ key, value: quoted(value), rule }));
+    return other(path, path.length ? rules.wrongTable({ key, rule }) : rule);
+  }
+  if (isNumber(value)) return outside(value, schema) ? other(path, rules.wrongValue({ key, value: quoted(value), rule: boundsOf(schema) })) : [];
+  if (Array.isArray(value)) return problemsOfList(value as readonly Toml[], schema, path);
+  return isTable(value) && schema.properties ? problemsOfTable(value, schema.properties, schema.required ?? [], path) : [];
 }
 
-export const whole: Shape = (value, path) => typeof value === "bigint" ? [] : other(path, value, "it should be a valid integer");
-export const text: Shape = (value, path) => typeof value === "string" ? [] : other(path, value, "it should be a valid string");
-export const anyTable: Shape = (value, path) => isTable(value) ? [] : other(path, value, "it should be an object");
-
-/** A list of exactly so many values, or of tables, which are counted otherwise. */
-export function list(count: number, item: Shape, ofTables: boolean): Shape {
-  return (value, path) => {
-    if (!Array.isArray(value)) return other(path, value, "it should be a valid array");
-    const items = value as readonly Toml[];
-    const found = items.slice(0, count).flatMap((one, place) => item(one, [...path, place]));
-    if (items.length < count && !ofTables) {
-      const missing = Array.from({ length: count - items.length }, (_, left): Problem => {
-        const place = [...path, items.length + left];
-        return { path: place, kind: "other", text: `${keyPath(place)} is missing` };
-      });
-      return [...found, ...missing];
-    }
-    if (items.length === count) return found;
-    const what = items.every(isTable) ? `[[${keyPath(path)}]]` : `values of ${keyPath(path)}`;
-    return [...found, { path, kind: "count", text: `${items.length} ${what} where there must be exactly ${count}` }];
-  };
+function outside(value: number | bigint, { minimum, maximum }: Schema): boolean {
+  return value < (minimum ?? -Infinity) || value > (maximum ?? Infinity);
 }
 
-/** A table of these keys, some of them optional, and no others; `rule` looks at a sound one as a whole, and says what is wrong, if anything. */
-export function table(
-  known: Readonly<Record<string, Shape>>, optional: readonly string[] = [], rule: (found: TomlTable) => string = () => "",
-): Shape {
-  return (value, path) => {
-    if (!isTable(value)) return other(path, value, "it should be an object");
-    const problems = Object.entries(known).flatMap(([key, shape]): Problem[] => {
-      const inside = value[key];
-      if (inside !== undefined) return shape(inside, [...path, key]);
-      return !optional.includes(key) ? [{ path: [...path, key], kind: "other", text: `${keyPath([...path, key])} is missing` }] : [];
-    });
-    for (const key of Object.keys(value)) {
-      if (Object.hasOwn(known, key)) continue;
-      const place = [...path, key];
-      problems.push({ path: place, kind: "unknown", text: `unknown key ${keyPath(place)}; ${advice(key, Object.keys(known))}` });
-    }
-    const broken = problems.length ? "" : rule(value);
-    return broken ? other(path, value, broken) : problems;
-  };
+/** All bounds of a number, whichever it misses. */
+function boundsOf(schema: Schema): string {
+  const told = Object.entries(rules.BOUND_WORDS).flatMap(([bound, words]) => {
+    const at = schema[bound as "minimum" | "maximum"];
+    return at === undefined ? [] : [`${words} ${short(at)}`];
+  });
+  return rules.within({ bounds: told.join(" and ") });
+}
+
+/** One after the other; those of a list with a type for each that are not there, and the number of all. */
+function problemsOfList(items: readonly Toml[], { prefixItems, items: each, minItems: exactly = 0 }: Schema, path: Path): Problem[] {
+  const found = items.slice(0, exactly).flatMap((one, place) => problemsOf(one, prefixItems?.[place] ?? each!, [...path, place]));
+  if (items.length === exactly) return found;
+  const key = keyPath(path);
+  if (prefixItems && items.length < exactly) {
+    const left = prefixItems.map((_, place) => [...path, place]).slice(items.length);
+    return [...found, ...left.flatMap((place) => other(place, rules.missingKey({ key: keyPath(place) })))];
+  }
+  const words = items.every(isTable) ? rules.countOfTables : rules.countOfValues;
+  return [...found, { path, kind: "count", text: words({ count: items.length, key, exactly }) }];
+}
+
+function problemsOfTable(value: TomlTable, known: Readonly<Record<string, Schema>>, required: readonly string[], path: Path): Problem[] {
+  const missing = (key: string): Problem[] =>
+    required.includes(key) ? other([...path, key], rules.missingKey({ key: keyPath([...path, key]) })) : [];
+  const problems = Object.entries(known).flatMap(([key, schema]) =>
+    value[key] === undefined ? missing(key) : problemsOf(value[key], schema, [...path, key]));
+  const unknown = Object.keys(value).filter((key) => !Object.hasOwn(known, key)).map((key): Problem => {
+    const place = [...path, key];
+    return { path: place, kind: "unknown", text: rules.unknownKey({ key: keyPath(place), advice: advice(key, Object.keys(known)) }) };
+  });
+  return [...problems, ...unknown];
 }
 
 /** Fails with the first problem, a misspelt key before all others: it is often missing as well. */
-export function require(content: TomlTable, shape: Shape, name: string): void {
-  const problems = shape(content, []);
+export function require(content: TomlTable, schema: Schema, name: string): void {
+  const problems = problemsOf(content, schema, []);
   problems.sort((a, b) => Number(b.kind === "unknown") - Number(a.kind === "unknown"));
   const within = ({ path }: Problem): boolean => problems.some((one) => one.path.length > path.length && path.every((part, i) => one.path[i] === part));
   const own = problems.filter((one) => one.kind !== "count" || !within(one));
   if (!own.length) return;
-  const more = own.length > 1 ? ` (and ${own.length - 1} more in this file)` : "";
-  throw new LinkError(`${name}: ${own[0]!.text}${more}.`);
+  throw new LinkError(`${name}: ${own[0]!.text}${own.length > 1 ? rules.more({ count: own.length - 1 }) : ""}.`);
 }

@@ -1,12 +1,13 @@
-// The whole parameter table as TOML, as greywhale/files/parameter_file.py writes and reads it.
+// The whole parameter table as TOML: what `greywhale params` backs up and restores.
 
 import { LinkError } from "../link/declared";
 import { TABLE } from "../link/schema";
 import type { NamedText } from "../parts/named_text";
 import { physicalText } from "../session/log";
-import { isTable } from "./check";
+import { isNumber, isTable } from "./check";
 import type { Toml, TomlTable } from "./toml_types";
-import { inFile, rawAsGiven } from "./raw_value";
+import { inFile, rawAsGiven, shown } from "./raw_value";
+import { missingParameter, noNumber, notBelow, unknownKey } from "./rules";
 import { readToml, refuseOtherKind } from "./toml";
 import { advice, keyPath, quoted, short } from "./words";
 
@@ -33,13 +34,13 @@ export function statedIn(given: NamedText): Map<number, number> {
   const found = flat(data);
   return inFile(file, () => {
     const unknown = [...found.keys()].find((name) => !NAMES.includes(name));
-    if (unknown !== undefined) throw new LinkError(`unknown key ${keyPath([unknown])}; ${advice(unknown, NAMES)}.`);
+    if (unknown !== undefined) throw new LinkError(`${unknownKey({ key: keyPath([unknown]), advice: advice(unknown, NAMES) })}.`);
     const layout = TABLE.parameters.reduce((newest, { name, since }) => found.has(name) ? Math.max(newest, since) : newest, 1);
     const stated = new Map(TABLE.parameters.filter(({ since }) => since <= layout).map((parameter): [number, number] => {
       const { name } = parameter;
       const value = found.get(name);
-      if (value === undefined) throw new LinkError(`${name} is missing; a parameter file holds all of them.`);
-      if (typeof value !== "number" && typeof value !== "bigint") throw new LinkError(`${name} is ${quoted(value)}, but it must be a number.`);
+      if (value === undefined) throw new LinkError(missingParameter({ name }));
+      if (!isNumber(value)) throw new LinkError(noNumber({ name, value: quoted(value) }));
       return [parameter.index, rawAsGiven(parameter, Number(value))];
     }));
     requireOrder(TABLE.parameters.map(({ index, initial }) => stated.get(index) ?? initial));
@@ -58,6 +59,6 @@ function requireOrder(raw: readonly number[]): void {
     if (!below) continue;
     const other = TABLE.named(below);
     if (raw[index]! < raw[other.index]!) continue;
-    throw new LinkError(`${name} is ${short(raw[index]! * lsb)} and ${below} is ${short(raw[other.index]! * other.lsb)} ${other.unit}; choose ${name} below ${below}.`);
+    throw new LinkError(notBelow({ name, value: short(raw[index]! * lsb), other: below, most: shown(other, raw[other.index]! * other.lsb) }));
   }
 }

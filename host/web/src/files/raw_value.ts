@@ -1,28 +1,31 @@
 // Numbers that a person gave, as a board stores them; whatever is wrong is the host's sentence.
 
 import { LinkError, type Parameter } from "../link/declared";
+import { choose, chooseBut0, notWhole, outOfRange, parameterNotFinite, tooSmall } from "./rules";
 import { short } from "./words";
 
 /** The nearest raw value in range. */
-export function rawOf({ name, lsb, unit, minimum, maximum, nonzero }: Parameter, value: number): number {
-  const of = unit && ` ${unit}`;
-  const advice = `choose a value from ${short(minimum * lsb)} to ${short(maximum * lsb)}${of}${nonzero ? ", other than 0" : ""}.`;
-  if (!Number.isFinite(value)) throw new LinkError(`${name} is ${short(value)}, but it must be a finite number; ${advice}`);
+export function rawOf(parameter: Parameter, value: number): number {
+  const { name, lsb, minimum, maximum, nonzero } = parameter;
+  const advice = (nonzero ? chooseBut0 : choose)({ least: short(minimum * lsb), most: shown(parameter, maximum * lsb) });
+  if (!Number.isFinite(value)) throw new LinkError(parameterNotFinite({ name, value: short(value), advice }));
   const raw = Math.floor(value / lsb + 0.5);
   if (raw >= minimum && raw <= maximum && (raw || !nonzero)) return raw;
-  throw new LinkError(`${name} is ${short(value)}${of}, which is out of range; ${advice}`);
+  throw new LinkError(outOfRange({ name, value: shown(parameter, value), advice }));
 }
 
 /** A raw value, refused where rounding would change it noticeably. */
 export function rawAsGiven(parameter: Parameter, value: number): number {
   const raw = rawOf(parameter, value);
-  const { name, lsb, unit } = parameter;
-  const of = unit && ` ${unit}`;
-  if (lsb === 1 && raw !== value) throw new LinkError(`${name} is ${short(value)}${of}, but it must be a whole number.`);
-  if (!raw && value) {
-    throw new LinkError(`${name} is ${short(value)}${of}, which the board would store as 0; choose 0, or a size from ${short(lsb)}${of}.`);
-  }
+  const { name, lsb } = parameter;
+  if (lsb === 1 && raw !== value) throw new LinkError(notWhole({ name, value: shown(parameter, value) }));
+  if (!raw && value) throw new LinkError(tooSmall({ name, value: shown(parameter, value), least: shown(parameter, lsb) }));
   return raw;
+}
+
+/** A value in words, with its unit. */
+export function shown({ unit }: Parameter, value: number): string {
+  return unit ? `${short(value)} ${unit}` : short(value);
 }
 
 /** The result of `act`; its sentence begins with the file's name. */

@@ -1,10 +1,11 @@
 // Refuses what smol-toml takes and the host's reader does not: TOML 1.1, and what would keep a parser busy.
 
-const DEEPEST = 24;
-// Strings and comments as a whole, so that nothing in them counts, and all else one by one; as greywhale/base/formats has it.
+import { DEEPEST_LEVEL, tooDeep } from "./rules";
+
+// Strings and comments as a whole, so that nothing in them counts, and all else one by one.
 const TOKEN = /(?<part>"{3}(?:[^\\]|\\.)*?"{3}|'{3}.*?'{3}|"(?:[^"\\\n]|\\.)*"|'[^'\n]*'|[\p{L}\p{N}_]+|-+|[^\S\n]+)|#[^\n]*|./gsu;
 
-/** Something that the host refuses, in which line it stands, and whether its words are the host's. */
+/** Something that the host refuses, in which line it stands, and whether its words are the host's whole sentence. */
 export type Mark = { readonly line: number; readonly words: string; readonly deep: boolean };
 
 export function findMark(text: string): Mark | null {
@@ -25,7 +26,7 @@ export function findMark(text: string): Mark | null {
     else if (token === "]" || token === "}") open.pop();
     else if (token === ".") parts++;
     if (!isPart && token !== ".") parts = 0;
-    if (open.length > DEEPEST || parts > DEEPEST) return mark(found.index, `nested more than ${DEEPEST} deep; no file of greywhale is`, true);
+    if (open.length > DEEPEST_LEVEL || parts > DEEPEST_LEVEL) return mark(found.index, tooDeep({ most: DEEPEST_LEVEL }), true);
     if (token.trim() && !token.startsWith("#")) before = token;
   }
   return null;

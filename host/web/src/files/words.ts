@@ -1,5 +1,6 @@
 // Words of sentences about files, as Python words them: numbers, what is quoted, which key was meant.
 
+import { checkSpelling, perhaps } from "./rules";
 import type { Path, Toml } from "./toml_types";
 
 const LONGEST = 60;
@@ -66,7 +67,7 @@ export function keyPath(path: Path): string {
 export function advice(key: string, known: readonly string[]): string {
   const [best] = known.map((name) => ({ name, score: likeness(name, key) })).filter(({ score }) => score >= ALIKE)
     .sort((a, b) => b.score - a.score || (a.name < b.name ? 1 : -1));
-  return best ? `perhaps ${best.name} is meant` : "remove it or check its spelling";
+  return best ? perhaps({ key: best.name }) : checkSpelling();
 }
 
 function likeness(one: string, other: string): number {

@@ -20,6 +20,7 @@ from typing import Any, ClassVar, TypeVar
 from pydantic import BaseModel, ConfigDict, ValidationError
 from pydantic_core import ErrorDetails
 
+from greywhale.base import sentences
 from greywhale.base.errors import UserError, cut, os_reason
 from greywhale.base.formats.kinds import Kind, refuse_other_kind
 from greywhale.base.formats.whole import refuse_devices
@@ -27,13 +28,13 @@ from greywhale.base.formats.whole import refuse_devices
 Model = TypeVar("Model", bound=BaseModel)
 
 # Limits of any file that greywhale writes; what is beyond would only keep the parser busy.
-_LONGEST_TEXT = 1 << 22  # letters
-_DEEPEST_LEVEL = 24  # of brackets, and parts of a key
-_LARGEST_INTEGER = 1 << 63  # as TOML has them
+LONGEST_TEXT = 1 << 22  # letters
+DEEPEST_LEVEL = 24  # of brackets, and parts of a key
+LARGEST_INTEGER = 1 << 63  # as TOML has them
 _BARE = re.compile(r"[A-Za-z0-9_-]+")
 # How the first line of a log or a motion begins, and one of a TOML file: a key, or a table's name.
-_CSV = re.compile(r'"?time_s"?[,;\t]')
-_TOML = re.compile(r"""[ \t]*(("[^"]*"|'[^']*'|[A-Za-z0-9_-]+)[ \t]*[.=]|\[\[?[ \t]*["'A-Za-z0-9_-])""")
+CSV_LINE = re.compile(r'"?time_s"?[,;\t]')
+TOML_LINE = re.compile(r"""[ \t]*(("[^"]*"|'[^']*'|[A-Za-z0-9_-]+)[ \t]*[.=]|\[\[?[ \t]*["'A-Za-z0-9_-])""")
 # Strings and comments as a whole, so that nothing in them counts, and all else one by one. Spaces may stand between the
 # parts of a key.
 _TOKEN = re.compile(
@@ -70,7 +71,7 @@ def read(path: str | Path) -> dict[str, Any]:
     except OSError as error:
         raise UserError(f"{path}: cannot be read: {os_reason(error)}.") from None
     except UnicodeDecodeError as error:
-        raise UserError(f"{path}: byte {error.start} is not UTF-8; TOML files must be UTF-8 text.") from None
+        raise UserError(f"{path}: {sentences.NOT_UTF8.format(at=error.start)}") from None
     return _parse(text, str(path))
 
 
@@ -90,7 +91,7 @@ def check(data: dict[str, Any], model: type[Model], name: str) -> Model:
 def advice(key: str, known: Iterable[str]) -> str:
     """Advice about an unknown key: the one that was probably meant, if there is one."""
     meant = get_close_matches(key, list(known), 1)
-    return f"perhaps {meant[0]} is meant" if meant else "remove it or check its spelling"
+    return sentences.PERHAPS.format(key=meant[0]) if meant else sentences.CHECK_SPELLING
 
 
 def key_path(location: Sequence[str | int]) -> str:
@@ -109,30 +110,29 @@ def _parse(text: str, name: str) -> dict[str, Any]:
         data = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         if _is_csv(text):
-            raise UserError(f"{name}: not valid TOML: this is a log or a motion (CSV).") from None
-        why = f"{_lower_first(cut(str(error), 200))}."
+            raise UserError(f"{name}: {sentences.CSV_IN_ITS_PLACE}") from None
+        sentence = sentences.NO_TOML.format(why=_lower_first(cut(str(error), 200)))
         if (line := _no_toml_line(text)) is not None:
-            why = f"line {line} is neither KEY = VALUE nor a [TABLE]; is this a file of greywhale?"
-        raise UserError(f"{name}: not valid TOML: {why}") from None
+            sentence = sentences.NO_TOML_LINE.format(line=line)
+        raise UserError(f"{name}: {sentence}") from None
     except RecursionError:
-        raise UserError(f"{name}: not valid TOML: it is nested too deeply.") from None
+        raise UserError(f"{name}: {sentences.NO_TOML.format(why='it is nested too deeply')}") from None
     except ValueError:  # Python reads no integer of thousands of digits
-        raise UserError(f"{name}: not valid TOML: a number in it has too many digits.") from None
+        raise UserError(f"{name}: {sentences.NO_TOML.format(why='a number in it has too many digits')}") from None
     if not data:
-        besides = ", but for comments" if text.strip() else ""
-        raise UserError(f"{name}: it is empty{besides}; choose another file.")
+        raise UserError(f"{name}: {sentences.COMMENTS_ALONE if text.strip() else sentences.EMPTY}")
     _refuse_odd_values(data, name)
     return data
 
 
 def _is_csv(text: str) -> bool:
-    return _CSV.match(_first_line(text)[1]) is not None
+    return CSV_LINE.match(_first_line(text)[1]) is not None
 
 
 def _no_toml_line(text: str) -> int | None:
     """The number of the first line that says something, if no TOML file begins so; else None."""
     number, line = _first_line(text)
-    return None if not line or _TOML.match(line) else number
+    return None if not line or TOML_LINE.match(line) else number
 
 
 def _first_line(text: str) -> tuple[int, str]:
@@ -143,8 +143,8 @@ def _first_line(text: str) -> tuple[int, str]:
 
 def _refuse_depth(text: str, name: str) -> None:
     """Refuse what would keep the parser busy: a file, a key or brackets beyond any that greywhale writes."""
-    if len(text) > _LONGEST_TEXT:
-        raise UserError(f"{name}: {len(text)} characters; a TOML file of greywhale has at most {_LONGEST_TEXT}.")
+    if len(text) > LONGEST_TEXT:
+        raise UserError(f"{name}: {sentences.TOO_LONG.format(count=len(text), most=LONGEST_TEXT)}")
     depth = parts = 0
     for found in _TOKEN.finditer(text):
         token = found.group()
@@ -157,22 +157,22 @@ def _refuse_depth(text: str, name: str) -> None:
             continue
         if found.lastgroup != "part":
             parts = 0
-        if depth > _DEEPEST_LEVEL or parts > _DEEPEST_LEVEL:
+        if depth > DEEPEST_LEVEL or parts > DEEPEST_LEVEL:
             line = text.count("\n", 0, found.start()) + 1
-            raise UserError(f"{name}, line {line}: nested more than {_DEEPEST_LEVEL} deep; no file of greywhale is.")
+            raise UserError(f"{name}, line {line}: {sentences.TOO_DEEP.format(most=DEEPEST_LEVEL)}")
 
 
 def _refuse_odd_values(data: dict[str, Any], name: str) -> None:
     """Refuse numbers beyond any range, and dates, of which each parser has another opinion."""
     for location, value in _odd_values(data, ()):
         if isinstance(value, datetime.date | datetime.time):
-            raise UserError(f"{name}: {key_path(location)} is a date or a time, but no file of greywhale holds one.")
-        if isinstance(value, int) and abs(value) > _LARGEST_INTEGER:
+            raise UserError(f"{name}: {sentences.DATE.format(key=key_path(location))}")
+        if isinstance(value, int) and abs(value) > LARGEST_INTEGER:
             # Python writes no integer of thousands of digits, but reads one from hexadecimal digits.
             shown = cut(str(value), 30) if value.bit_length() < 1000 else f"a number of {value.bit_length()} bits"
-            raise UserError(f"{name}: {key_path(location)} is {shown}, which is out of any range.")
+            raise UserError(f"{name}: {sentences.BEYOND_ANY_RANGE.format(key=key_path(location), value=shown)}")
         if not math.isfinite(value):
-            raise UserError(f"{name}: {key_path(location)} is {value}; it must be a finite number.")
+            raise UserError(f"{name}: {sentences.NOT_FINITE.format(key=key_path(location), value=value)}")
 
 
 _Odd = int | float | datetime.date | datetime.time
@@ -197,7 +197,7 @@ def _sentence(name: str, model: type[BaseModel], error: ValidationError) -> str:
     whole = [one for one in problems if one["type"] != "too_short" or one["loc"] not in above]
     text = f"{name}: {_problem(whole[0], model)}"
     if len(whole) > 1:
-        text += f" (and {len(whole) - 1} more in this file)"
+        text += sentences.MORE.format(count=len(whole) - 1)
     return text + "."
 
 
@@ -206,30 +206,37 @@ def _problem(problem: ErrorDetails, model: type[BaseModel]) -> str:
     key = key_path(location)
     if kind == "extra_forbidden":
         known = _at(model.model_json_schema(), location[:-1]).get("properties", ())
-        return f"unknown key {key}; {advice(str(location[-1]), known)}"
+        return sentences.UNKNOWN_KEY.format(key=key, advice=advice(str(location[-1]), known))
     if kind == "missing":
-        return f"{key} is missing"
+        return sentences.MISSING_KEY.format(key=key)
     if kind in _BOUNDS:  # pydantic names only the end of the range that was missed
         here = _at(model.model_json_schema(), location)
-        bounds = " and ".join(f"{words} {here[bound]:g}" for bound, words in _BOUND_WORDS.items() if bound in here)
-        return f"{key} is {cut(json.dumps(value))}, but it must be {bounds}"
+        bounds = " and ".join(f"{words} {here[bound]:g}" for bound, words in BOUND_WORDS.items() if bound in here)
+        rule = sentences.WITHIN.format(bounds=bounds)
+        return sentences.WRONG_VALUE.format(key=key, value=cut(json.dumps(value)), rule=rule)
     if kind in ("too_short", "too_long") and isinstance(value, list):
         here = _at(model.model_json_schema(), location)
         count = here.get("minItems")
         if count is not None and count == here.get("maxItems"):
-            what = f"[[{key}]]" if all(isinstance(one, dict) for one in value) else f"values of {key}"
-            return f"{len(value)} {what} where there must be exactly {count}"
-    message = _lower_first(problem["msg"].removeprefix("Value error, ").removeprefix("Assertion failed, "))
-    message = message.replace("input should", "it should").rstrip(".")
+            of_tables = all(isinstance(one, dict) for one in value)
+            words = sentences.COUNT_OF_TABLES if of_tables else sentences.COUNT_OF_VALUES
+            return words.format(count=len(value), key=key, exactly=count)
+    message = rule_of(problem["msg"])
     if isinstance(value, dict | list):
         # A rule over a whole table words its own sentence; printing the table itself would not help.
-        return f"{key}: {message}" if location else message
-    return f"{key} is {cut(json.dumps(value))}, but {message}"
+        return sentences.WRONG_TABLE.format(key=key, rule=message) if location else message
+    return sentences.WRONG_VALUE.format(key=key, value=cut(json.dumps(value)), rule=message)
+
+
+def rule_of(message: str) -> str:
+    """The demand of a message of pydantic, ready to stand inside a sentence."""
+    message = _lower_first(message.removeprefix("Value error, ").removeprefix("Assertion failed, "))
+    return message.replace("input should", "it should").rstrip(".")
 
 
 # Kinds of complaint about a number out of range; the words for each bound in a JSON schema.
 _BOUNDS = ("greater_than", "greater_than_equal", "less_than", "less_than_equal")
-_BOUND_WORDS = {
+BOUND_WORDS = {
     "minimum": "at least",
     "exclusiveMinimum": "greater than",
     "maximum": "at most",

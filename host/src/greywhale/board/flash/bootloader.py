@@ -9,6 +9,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import closing, contextmanager
 from dataclasses import dataclass
 
+from greywhale.base import sentences
 from greywhale.base.errors import UserError
 from greywhale.board.flash.stk500 import LANGUAGES, Stk500
 from greywhale.board.flash.talk import Talk
@@ -45,10 +46,7 @@ def find_bootloader(port: str, likely: Sequence[Dialect], others: Sequence[Diale
             if line.enter():
                 return Bootloader(dialect, line.signature())
     tried = " and ".join(dict.fromkeys(str(dialect.baud) for dialect in likely))
-    raise UserError(
-        f"{port}: no bootloader answers at {tried} baud; check that the board's reset works, "
-        "or burn a bootloader with a programmer."
-    )
+    raise UserError(f"{port}: {sentences.NO_BOOTLOADER.format(bauds=tried)}")
 
 
 @contextmanager

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from greywhale.base import sentences
 from greywhale.base.errors import BadUsage, UserError
 from greywhale.base.types import Progress, show_no_progress
 from greywhale.board.device import Device
@@ -88,7 +89,8 @@ def _name_of(port: str, found: Bootloader) -> str:
             return name
     assert found.signature is not None
     known = " and ".join(f"{board.title} ({board.signature.hex()})" for board in BOARDS.values())
-    raise UserError(f"{port}: the chip has signature {found.signature.hex()}; greywhale runs on {known} only.")
+    signature = f"signature {found.signature.hex()}"
+    raise UserError(f"{port}: {sentences.OTHER_CHIP.format(signature=signature, known=known)}")
 
 
 def _packaged(name: str) -> Image:

@@ -11,6 +11,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from greywhale.base import sentences
 from greywhale.base.errors import BadUsage, os_reason
 from greywhale.board.flash.targets import BOARDS, FlashBoard
 
@@ -76,13 +77,13 @@ def read_pieces(path: Path) -> list[tuple[int, bytes]]:
     pieces: list[tuple[int, bytearray]] = []
     for address, data in _records(path, lines):
         if address + len(data) > _LARGEST_IMAGE_BYTES:
-            raise BadUsage(f"{path}: data at address {address:#x}; no board has as much memory.")
+            raise BadUsage(f"{path}: {sentences.BEYOND_ANY_BOARD.format(address=hex(address))}")
         if pieces and address == pieces[-1][0] + len(pieces[-1][1]):
             pieces[-1][1].extend(data)
         elif data:
             pieces.append((address, bytearray(data)))
     if not pieces:
-        raise BadUsage(f"{path}: the file holds no data; give the .hex that PlatformIO built.")
+        raise BadUsage(f"{path}: {sentences.NO_DATA}")
     return [(address, bytes(data)) for address, data in pieces]
 
 
@@ -91,15 +92,10 @@ def check_image(image: Image, board: FlashBoard, port: str) -> None:
     if image.record is not None and image.record.signature != board.signature:
         others = [other.title for other in BOARDS.values() if other.signature == image.record.signature]
         meant = f"an {others[0]}" if others else f"a chip with signature {image.record.signature.hex()}"
-        raise BadUsage(
-            f"{image.path}: this image is for {meant}, but the board on {port} is an {board.title}; "
-            "choose another file."
-        )
+        raise BadUsage(f"{image.path}: {sentences.OTHER_BOARD.format(meant=meant, port=port, board=board.title)}")
     if image.end > board.space:
-        raise BadUsage(
-            f"{image.path}: the image reaches up to byte {image.end}, but an {board.title} has room for "
-            f"{board.space}; choose another file."
-        )
+        words = sentences.NO_ROOM.format(end=image.end, board=board.title, space=board.space)
+        raise BadUsage(f"{image.path}: {words}")
 
 
 def _records(path: Path, lines: list[str]) -> Iterator[tuple[int, bytes]]:
@@ -115,7 +111,7 @@ def _records(path: Path, lines: list[str]) -> Iterator[tuple[int, bytes]]:
             return
         elif kind in (_SEGMENT, _LINEAR):
             base = int.from_bytes(data, "big") << (4 if kind == _SEGMENT else 16)
-    raise BadUsage(f"{path}: the file ends too early; copy or build it again.")
+    raise BadUsage(f"{path}: {sentences.ENDS_TOO_EARLY}")
 
 
 def _parse(line: str, where: str) -> tuple[int, int, bytes]:
@@ -123,7 +119,7 @@ def _parse(line: str, where: str) -> tuple[int, int, bytes]:
     content = bytes.fromhex(line[1:]) if _FORM.fullmatch(line) else b"\xff"
     moves = len(content) > 3 and content[3] in (_SEGMENT, _LINEAR)
     if len(content) != content[0] + 5 or sum(content) % 256 or (moves and content[0] != 2):
-        raise BadUsage(f"{where}: this is no Intel HEX record; give the .hex that PlatformIO built.")
+        raise BadUsage(f"{where}: {sentences.NO_HEX_RECORD}")
     return content[3], int.from_bytes(content[1:3], "big"), content[4:-1]
 
 

@@ -13,6 +13,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack
 
+from greywhale.base import sentences
 from greywhale.base.errors import UserError
 from greywhale.base.types import Progress
 from greywhale.board.flash.bootloader import Dialect, enter_bootloader
@@ -139,6 +140,5 @@ def _must_erase_gaps(memory: Memory, image: Image, held: Sequence[range], size: 
 def _require(port: str, page: range, content: bytes, found: bytes) -> None:
     for at, wanted, holds in zip(page, content, found, strict=True):
         if wanted != holds:
-            raise UserError(
-                f"{port}: the board holds {holds:#04x} at address {at:#x} instead of {wanted:#04x}; flash it again."
-            )
+            words = sentences.WRONG_BYTE.format(found=f"{holds:#04x}", address=hex(at), wanted=f"{wanted:#04x}")
+            raise UserError(f"{port}: {words}")
