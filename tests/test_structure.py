@@ -29,10 +29,9 @@ PAGE_ROOMS = ["link", "parts", "session", "files", "tuner", "sources", "views", 
 UNKNOWN_TO_VIEWS = {"sources", "tuner"}
 # A rule that two languages hold is written twice: these files of the page repeat one of Python's, and no others may.
 TWINS = {
-    *("session/law.ts", "sources/serial/flash/image.ts", "sources/serial/flash/targets.ts"),
-    *("tuner/costs.ts", "tuner/search.ts", "tuner/space.ts", "tuner/unrest.ts"),
-    *("tuner/wolf_whale.ts", "views/calibrate/motors.ts", "views/calibrate/solve.ts", "views/calibrate/sweep.ts"),
-    "views/calibrate/words.ts",
+    "session/law.ts",
+    *("tuner/costs.ts", "tuner/search.ts", "tuner/space.ts", "tuner/unrest.ts", "tuner/wolf_whale.ts"),
+    *("views/calibrate/motors.ts", "views/calibrate/solve.ts", "views/calibrate/sweep.ts", "views/calibrate/words.ts"),
 }
 # A docstring says what a thing is or does; one that begins with such a word describes it from outside, as a question.
 QUESTIONS = re.compile(r"(What|Whether|How|Where|Which|Who|Whose|When|Why|The same)\b")

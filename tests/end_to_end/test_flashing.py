@@ -13,7 +13,7 @@ from greywhale.board import flash
 from greywhale.board.flash import platformio
 from greywhale.board.flash.bootloader import Bootloader, Dialect, find_bootloader
 from greywhale.board.flash.images import read_image, read_pieces
-from greywhale.board.flash.targets import BOARDS
+from greywhale.board.flash.rules import BOARDS
 from greywhale.cli.story import BenchProcess
 from greywhale.protocol import schema
 from greywhale.protocol.transport import BAUD, LINES, Line

@@ -21,7 +21,7 @@ from pathlib import Path
 
 import pytest
 
-from greywhale.board.flash.targets import BOARDS
+from greywhale.board.flash.rules import BOARDS
 from greywhale.cli.story import BenchProcess
 from tools import ROOT, dist
 from tools.oracles import wheelhouse

@@ -11,7 +11,7 @@ import pytest
 
 import greywhale
 from greywhale.board.flash.images import read_image
-from greywhale.board.flash.targets import BOARDS
+from greywhale.board.flash.rules import BOARDS
 from greywhale.protocol import schema
 from tools import ROOT
 

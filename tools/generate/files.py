@@ -17,6 +17,7 @@ from greywhale.base.formats.kinds import Kind
 from greywhale.files.controller import Controller, stored_as
 from greywhale.protocol.schema import PARAMETER_BY_NAME
 from tools.generate.current import keep_current
+from tools.generate.names import camel
 
 RULES = "host/web/src/files/rules.ts"
 HEAD = """// Rules for files that people give: the host's own.
@@ -126,12 +127,10 @@ def _sentences() -> Iterator[str]:
         if not name.isupper():
             continue
         filled = list(dict.fromkeys(field for _, field, _, _ in Formatter().parse(template) if field))
-        first, *others = name.lower().split("_")
-        function = first + "".join(map(str.capitalize, others))
         named = f"{{ {', '.join(filled)} }}: Filling<{' | '.join(map(json.dumps, filled))}>" if filled else ""
         body = re.sub(r"\{(\w+)\}", r"${\1}", template)
         assert not {"`", "\\", "$"} & set(template), "none of them has to be escaped so far"
-        yield f"export const {function} = ({named}): string => `{body}`;"
+        yield f"export const {camel(name)} = ({named}): string => `{body}`;"
 
 
 def main(arguments: list[str]) -> int:

@@ -7,7 +7,7 @@ import { EnableRequest, LeadRequest, Sample, State } from "../src/link/schema";
 import { SerialBoard } from "../src/sources/serial/board";
 import { checkImage, readImage } from "../src/sources/serial/flash/image";
 import { Lease } from "../src/sources/serial/lease";
-import { TARGETS } from "../src/sources/serial/flash/targets";
+import { TARGETS } from "../src/sources/serial/flash/rules";
 
 function record(address: number, kind: number, data: readonly number[]): string {
   const bytes = [data.length, address >> 8, address & 0xff, kind, ...data];

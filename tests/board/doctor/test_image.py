@@ -13,7 +13,7 @@ from greywhale.base.errors import UserError
 from greywhale.board.device import Device
 from greywhale.board.flash.pages import held_blocks
 from greywhale.board.flash.readback import shipped_image
-from greywhale.board.flash.targets import BOARDS
+from greywhale.board.flash.rules import BOARDS
 from greywhale.cli.entry import run
 from greywhale.protocol.lines import open_line
 from greywhale.protocol.schema import State

@@ -15,8 +15,8 @@ from greywhale.board.flash import flasher as module
 from greywhale.board.flash import images, platformio
 from greywhale.board.flash.bootloader import find_bootloader
 from greywhale.board.flash.images import read_image
+from greywhale.board.flash.rules import BOARDS
 from greywhale.board.flash.runner import Tool
-from greywhale.board.flash.targets import BOARDS
 from greywhale.protocol import schema
 from greywhale.protocol.transport import BAUD, LINES, Line
 from tests.board.fake_board import FakeBoard

@@ -8,7 +8,7 @@ import pytest
 
 from greywhale.base.errors import UserError
 from greywhale.board.flash.images import Record, check_image, read_image
-from greywhale.board.flash.targets import BOARDS
+from greywhale.board.flash.rules import BOARDS
 from greywhale.protocol import schema
 from tests.board.flash.hex_files import SOURCES, hex_text, image_record, record, write_image
 

@@ -14,8 +14,8 @@ import pytest
 from greywhale.base.errors import UserError
 from greywhale.base.types import show_no_progress
 from greywhale.board.flash import platformio
+from greywhale.board.flash.rules import BOARDS
 from greywhale.board.flash.runner import Tool
-from greywhale.board.flash.targets import BOARDS
 from tests.board.flash.hex_files import SOURCES, write_image
 
 MEGA = BOARDS["mega"]

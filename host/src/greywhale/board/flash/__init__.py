@@ -2,6 +2,6 @@
 
 from greywhale.board.flash.flasher import flash
 from greywhale.board.flash.images import packaged_image
-from greywhale.board.flash.targets import BOARDS
+from greywhale.board.flash.rules import BOARDS
 
 __all__ = ["BOARDS", "flash", "packaged_image"]

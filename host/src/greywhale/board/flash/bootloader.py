@@ -11,13 +11,10 @@ from dataclasses import dataclass
 
 from greywhale.base import sentences
 from greywhale.base.errors import UserError
+from greywhale.board.flash.rules import ROUNDS, START_S
 from greywhale.board.flash.stk500 import LANGUAGES, Stk500
 from greywhale.board.flash.talk import Talk
 from greywhale.protocol.lines import open_line
-
-_GREETING_ROUNDS = 3  # through the likely dialects, each after a reset
-# From the reset until a bootloader listens: the start-up delay of an Arduino's fuses is 65 ms.
-_START_S = 0.1
 
 
 @dataclass(frozen=True)
@@ -41,7 +38,7 @@ def find_bootloader(port: str, likely: Sequence[Dialect], others: Sequence[Diale
 
     Every try opens the port anew, which resets the board and so starts its bootloader.
     """
-    for dialect in [*list(likely) * _GREETING_ROUNDS, *others]:
+    for dialect in [*list(likely) * ROUNDS, *others]:
         with _open(port, dialect) as line:
             if line.enter():
                 return Bootloader(dialect, line.signature())
@@ -61,5 +58,5 @@ def enter_bootloader(port: str, dialect: Dialect) -> Iterator[Stk500]:
 @contextmanager
 def _open(port: str, dialect: Dialect) -> Iterator[Stk500]:
     with closing(open_line(port, baud=dialect.baud)) as line:
-        line.wait(_START_S)
+        line.wait(START_S)
         yield LANGUAGES[dialect.version](Talk(line))

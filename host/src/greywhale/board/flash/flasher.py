@@ -15,7 +15,8 @@ from greywhale.board.flash import platformio
 from greywhale.board.flash.bootloader import Bootloader, Dialect, find_bootloader
 from greywhale.board.flash.images import Image, check_image, packaged_image, read_image
 from greywhale.board.flash.pages import write_image
-from greywhale.board.flash.targets import BOARDS, FlashBoard
+from greywhale.board.flash.rules import BOARDS
+from greywhale.board.flash.targets import FlashBoard
 from greywhale.board.session import Session
 from greywhale.protocol import schema
 from greywhale.protocol.ports import board_of

@@ -13,19 +13,16 @@ from pathlib import Path
 
 from greywhale.base import sentences
 from greywhale.base.errors import BadUsage, os_reason
-from greywhale.board.flash.targets import BOARDS, FlashBoard
+from greywhale.board.flash import rules
+from greywhale.board.flash.targets import FlashBoard
 
 PACKAGED = Path(__file__).resolve().parents[2] / "data" / "firmware"
 
-_MAGIC = b"greywhale image\0"
 _RECORD = struct.Struct("<16sB3s3BI17s")
-_LAYOUT_VERSION = 1  # of the record in an image
-_LARGEST_IMAGE_BYTES = 1 << 20  # no board has as much
-ERASED = b"\xff"  # a byte of memory
+assert _RECORD.size == rules.IMAGE_RECORD_BYTES
+ERASED = bytes([rules.ERASED])
 
 _FORM = re.compile("(?i):([0-9a-f]{2}){5,}")
-# Types of Intel HEX records.
-_DATA, _END, _SEGMENT, _LINEAR = 0, 1, 2, 4
 
 
 @dataclass(frozen=True)
@@ -76,7 +73,7 @@ def read_pieces(path: Path) -> list[tuple[int, bytes]]:
         raise BadUsage(f"{path}: cannot be read: {os_reason(error)}.") from None
     pieces: list[tuple[int, bytearray]] = []
     for address, data in _records(path, lines):
-        if address + len(data) > _LARGEST_IMAGE_BYTES:
+        if address + len(data) > rules.LARGEST_IMAGE_BYTES:
             raise BadUsage(f"{path}: {sentences.BEYOND_ANY_BOARD.format(address=hex(address))}")
         if pieces and address == pieces[-1][0] + len(pieces[-1][1]):
             pieces[-1][1].extend(data)
@@ -90,7 +87,7 @@ def read_pieces(path: Path) -> list[tuple[int, bytes]]:
 def check_image(image: Image, board: FlashBoard, port: str) -> None:
     """Refuse an image that is plainly for another board."""
     if image.record is not None and image.record.signature != board.signature:
-        others = [other.title for other in BOARDS.values() if other.signature == image.record.signature]
+        others = [other.title for other in rules.BOARDS.values() if other.signature == image.record.signature]
         meant = f"an {others[0]}" if others else f"a chip with signature {image.record.signature.hex()}"
         raise BadUsage(f"{image.path}: {sentences.OTHER_BOARD.format(meant=meant, port=port, board=board.title)}")
     if image.end > board.space:
@@ -105,29 +102,29 @@ def _records(path: Path, lines: list[str]) -> Iterator[tuple[int, bytes]]:
         if not (text := line.strip(" \t")):
             continue
         kind, address, data = _parse(text, f"{path}, line {number}")
-        if kind == _DATA:
+        if kind == rules.HEX_DATA:
             yield base + address, data
-        elif kind == _END:
+        elif kind == rules.HEX_END:
             return
-        elif kind in (_SEGMENT, _LINEAR):
-            base = int.from_bytes(data, "big") << (4 if kind == _SEGMENT else 16)
+        elif kind in (rules.HEX_SEGMENT, rules.HEX_LINEAR):
+            base = int.from_bytes(data, "big") << (4 if kind == rules.HEX_SEGMENT else 16)
     raise BadUsage(f"{path}: {sentences.ENDS_TOO_EARLY}")
 
 
 def _parse(line: str, where: str) -> tuple[int, int, bytes]:
     """Type, address and data of one record; one that moves the base has two bytes that say where to."""
     content = bytes.fromhex(line[1:]) if _FORM.fullmatch(line) else b"\xff"
-    moves = len(content) > 3 and content[3] in (_SEGMENT, _LINEAR)
+    moves = len(content) > 3 and content[3] in (rules.HEX_SEGMENT, rules.HEX_LINEAR)
     if len(content) != content[0] + 5 or sum(content) % 256 or (moves and content[0] != 2):
         raise BadUsage(f"{where}: {sentences.NO_HEX_RECORD}")
     return content[3], int.from_bytes(content[1:3], "big"), content[4:-1]
 
 
 def _find_record(memory: bytearray) -> Record | None:
-    start = memory.find(_MAGIC)
+    start = memory.find(rules.IMAGE_MAGIC)
     if start < 0 or start + _RECORD.size > len(memory):
         return None
     _, layout, signature, *version, schema_hash, sources = _RECORD.unpack_from(memory, start)
-    if layout != _LAYOUT_VERSION:
+    if layout != rules.IMAGE_LAYOUT:
         return None
     return Record(signature, ".".join(map(str, version)), schema_hash, sources.rstrip(b"\0").decode("ascii", "replace"))

@@ -18,11 +18,10 @@ from greywhale.base.errors import UserError
 from greywhale.base.types import Progress
 from greywhale.board.flash.bootloader import Dialect, enter_bootloader
 from greywhale.board.flash.images import ERASED, Image
+from greywhale.board.flash.rules import ATTEMPTS, LOOP
 from greywhale.board.flash.stk500 import Stk500
 from greywhale.protocol.transport import PortDisturbedError, PortLostError
 
-_PAGE_ATTEMPTS = 3  # to write or read a page, each after a restart
-_LOOP = b"\xff\xcf"  # rjmp to itself, with interrupts off and all pins inputs as after every restart
 _ERASED_WORD = 2 * ERASED  # a word that changes nothing wherever it is written, but a page is erased for it
 
 
@@ -36,7 +35,7 @@ class Memory:
         self.port, self.line, self._restart = port, line, restart
 
     def write(self, address: int, content: bytes) -> None:
-        for _ in range(_PAGE_ATTEMPTS):
+        for _ in range(ATTEMPTS):
             if self.line.write(address, content):
                 return
             self._resume(address)
@@ -44,7 +43,7 @@ class Memory:
 
     def read(self, block: range) -> bytes:
         """A page at most."""
-        for _ in range(_PAGE_ATTEMPTS):
+        for _ in range(ATTEMPTS):
             found = self.line.read(block.start, len(block) + len(block) % 2)  # whole words
             if found is not None:
                 return found[: len(block)]
@@ -75,7 +74,7 @@ class Memory:
 def write_image(port: str, dialect: Dialect, image: Image, size: int, report: Progress) -> None:
     """Write the image in pages of this size, read all of it back, and let the board start it."""
     first, *others = blocks_of(image, size)
-    loop = _LOOP.ljust(size, ERASED)
+    loop = LOOP.ljust(size, ERASED)
     try:
         with ExitStack() as opened:
 
@@ -106,7 +105,7 @@ def write_image(port: str, dialect: Dialect, image: Image, size: int, report: Pr
 def _write_first(port: str, dialect: Dialect, page: range, content: bytes, size: int) -> None:
     """Write the first page, and let the board start. Once after each restart: a second write erases the next page."""
     found = b""
-    for _ in range(_PAGE_ATTEMPTS):
+    for _ in range(ATTEMPTS):
         with enter_bootloader(port, dialect) as line:
             memory = Memory(port, line)
             memory.read(page)  # the first question may be lost, and asked again it does no harm

@@ -18,7 +18,7 @@ from greywhale.board.flash.flasher import find_board
 from greywhale.board.flash.images import Image, check_image, packaged_image, read_image
 from greywhale.board.flash.pages import Memory, held_blocks
 from greywhale.board.flash.platformio import find_sources, last_build
-from greywhale.board.flash.targets import BOARDS
+from greywhale.board.flash.rules import BOARDS
 
 
 @dataclass(frozen=True)

@@ -5,10 +5,13 @@ Addresses are in bytes and even. A wrong answer, or none in time, is None, False
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import reduce
 from operator import xor
 from typing import Protocol
 
+from greywhale.board.flash.question import ANY, Question, keep
+from greywhale.board.flash.rules import Stk500V1, Stk500V2
 from greywhale.board.flash.talk import Talk
 
 
@@ -35,47 +38,41 @@ class Stk500(Protocol):
 
 
 class Version1:
-    """The Nano's: a command of one letter and a space; "in sync", the answer, "ok"."""
+    """The Nano's."""
 
     erases_in_order = False
-    _IN_SYNC, _OK = b"\x14", b"\x10"
 
     def __init__(self, talk: Talk) -> None:
         self._talk = talk
 
     def enter(self, lost: bool = False) -> bool:
-        return self._talk.hear(b"0 ", self._IN_SYNC + self._OK, lost)
+        question = Stk500V1.enter()
+        return self._talk.hear(bytes(question.asks), bytes(question.answer), lost)
 
     def signature(self) -> bytes | None:
-        return self._ask(b"u", 3)
+        return self._ask(Stk500V1.signature())
 
     def write(self, address: int, page: bytes) -> bool:
-        return self._seek(address) and self._ask(b"d" + len(page).to_bytes(2, "big") + b"F" + page) is not None
+        return self._seek(address) and self._ask(Stk500V1.write_page(page)) is not None
 
     def read(self, address: int, count: int) -> bytes | None:
-        return self._ask(b"t" + count.to_bytes(2, "big") + b"F", count) if self._seek(address) else None
+        return self._ask(Stk500V1.read_page(count)) if self._seek(address) else None
 
     def leave(self) -> None:
-        self._ask(b"Q")
+        self._ask(Stk500V1.leave())
 
     def _seek(self, address: int) -> bool:
-        return self._ask(b"U" + (address // 2).to_bytes(2, "little")) is not None
+        return self._ask(Stk500V1.load_address(address // 2)) is not None
 
-    def _ask(self, command: bytes, count: int = 0) -> bytes | None:
-        self._talk.write(command + b" ")
-        answer = self._talk.read(count + 2)
-        return answer[1:-1] if answer[:1] == self._IN_SYNC and answer[count + 1 :] == self._OK else None
+    def _ask(self, question: Question) -> bytes | None:
+        self._talk.write(bytes(question.asks))
+        return keep(self._talk.read(len(question.answer)), question.answer)
 
 
 class Version2:
-    """The Mega's: messages with start, sequence number, length, token, body and checksum."""
+    """The Mega's."""
 
     erases_in_order = True
-    _SIGN_ON, _LOAD_ADDRESS, _LEAVE = b"\x01", b"\x06", b"\x11\x01\x01"
-    _PROGRAM, _READ, _SPI = b"\x13", b"\x14", b"\x1d"
-    # How to write a page and to wait, for a programmer; a bootloader knows that by itself.
-    _HOW_TO_WRITE, _HOW_TO_READ = b"\xc1\x0a\x40\x4c\x20\x00\x00", b"\x20"
-    _BEYOND_64_KB = 1 << 31
 
     def __init__(self, talk: Talk) -> None:
         self._talk = talk
@@ -84,45 +81,39 @@ class Version2:
 
     def enter(self, lost: bool = False) -> bool:
         self._sequence, self._at = 1, None
-        return self._talk.hear(self._message(self._SIGN_ON), b"\x0e\x01\x00\x08AVRISP_2", lost)
+        question = Stk500V2.enter()
+        return self._talk.hear(self._message(question.asks), bytes(question.answer), lost)
 
     def signature(self) -> bytes | None:
-        """Byte by byte, as SPI commands that the bootloader answers itself."""
-        answers = [self._ask(self._SPI + bytes([4, 4, 0, 0x30, 0, index, 0]), 5) for index in range(3)]
-        return None if None in answers else b"".join(answer[3:4] for answer in answers if answer is not None)
+        answers = [self._ask(Stk500V2.signature(index)) for index in range(3)]
+        return None if None in answers else b"".join(answer for answer in answers if answer is not None)
 
     def write(self, address: int, page: bytes) -> bool:
-        command = self._PROGRAM + len(page).to_bytes(2, "big") + self._HOW_TO_WRITE + page
-        return self._go_on(address, command, len(page), 0) is not None
+        return self._go_on(address, Stk500V2.write_page(page), len(page)) is not None
 
     def read(self, address: int, count: int) -> bytes | None:
-        command = self._READ + count.to_bytes(2, "big") + self._HOW_TO_READ
-        answer = self._go_on(address, command, count, count + 1)
-        return answer[:-1] if answer is not None and answer[-1:] == b"\x00" else None
+        return self._go_on(address, Stk500V2.read_page(count), count)
 
     def leave(self) -> None:
-        self._ask(self._LEAVE, 0)
+        self._ask(Stk500V2.leave())
 
-    def _go_on(self, address: int, command: bytes, moved: int, count: int) -> bytes | None:
-        """The answer to a command that works on memory from an address on."""
-        word = address // 2 | self._BEYOND_64_KB
-        there = self._at == address or self._ask(self._LOAD_ADDRESS + word.to_bytes(4, "big"), 0) is not None
-        answer = self._ask(command, count) if there else None
+    def _go_on(self, address: int, question: Question, moved: int) -> bytes | None:
+        """The answer to a question about memory from an address on."""
+        there = self._at == address or self._ask(Stk500V2.load_address(address // 2)) is not None
+        answer = self._ask(question) if there else None
         self._at = None if answer is None else address + moved
         return answer
 
-    def _message(self, body: bytes) -> bytes:
-        message = bytes([0x1B, self._sequence]) + len(body).to_bytes(2, "big") + b"\x0e" + body
+    def _message(self, body: Sequence[int]) -> bytes:
+        message = bytes(Stk500V2.message(self._sequence, body))
         return message + bytes([reduce(xor, message)])
 
-    def _ask(self, body: bytes, count: int) -> bytes | None:
-        """So many bytes as follow the command and "done" in the answer."""
+    def _ask(self, question: Question) -> bytes | None:
         self._sequence = (self._sequence + 1) % 256
-        self._talk.write(self._message(body))
-        head = bytes([0x1B, self._sequence]) + (count + 2).to_bytes(2, "big") + b"\x0e" + body[:1] + b"\x00"
-        answer = self._talk.read(len(head) + count + 1)
-        sound = answer.startswith(head) and len(answer) == len(head) + count + 1 and reduce(xor, answer) == 0
-        return answer[len(head) : -1] if sound else None
+        self._talk.write(self._message(question.asks))
+        pattern = [*Stk500V2.message(self._sequence, question.answer), ANY]
+        heard = self._talk.read(len(pattern))
+        return None if reduce(xor, heard, 0) else keep(heard, pattern)
 
 
 LANGUAGES: dict[int, type[Stk500]] = {1: Version1, 2: Version2}  # by version

@@ -1,7 +1,7 @@
 // The two languages of Arduinos' bootloaders. Addresses are in bytes and even; a wrong answer is null or false.
 
-import { ERASED } from "./image";
-import type { Speaks } from "./targets";
+import { keep, ANY, type Question } from "./question";
+import { ERASED, Stk500V1, Stk500V2 } from "./rules";
 import type { Talk } from "./talk";
 
 export interface Bootloader {
@@ -18,25 +18,21 @@ export interface Bootloader {
   leave(): Promise<void>;
 }
 
-const IN_SYNC = 0x14;
-const OK = 0x10;
-const letter = (text: string): number => text.charCodeAt(0);
-const END = letter(" ");
-
-/** The Nano's: a command of one letter and a space; "in sync", the answer, "ok". */
+/** The Nano's. */
 class Version1 implements Bootloader {
   constructor(private readonly talk: Talk) {}
 
   enter(): Promise<boolean> {
-    return this.talk.hears(Uint8Array.of(letter("0"), END), [IN_SYNC, OK]);
+    const { asks, answer } = Stk500V1.enter();
+    return this.talk.hears(asks, answer);
   }
 
   signature(): Promise<Uint8Array | null> {
-    return this.ask([letter("u")], 3);
+    return this.ask(Stk500V1.signature());
   }
 
   async write(address: number, page: Uint8Array): Promise<boolean> {
-    return await this.seek(address) && await this.ask([letter("d"), ...size(page.length), letter("F"), ...page]) !== null;
+    return await this.seek(address) && await this.ask(Stk500V1.writePage(page)) !== null;
   }
 
   async pass(): Promise<boolean> {
@@ -44,52 +40,41 @@ class Version1 implements Bootloader {
   }
 
   async read(address: number, count: number): Promise<Uint8Array | null> {
-    return await this.seek(address) ? this.ask([letter("t"), ...size(count), letter("F")], count) : null;
+    return await this.seek(address) ? this.ask(Stk500V1.readPage(count)) : null;
   }
 
   async leave(): Promise<void> {
-    await this.ask([letter("Q")]);
+    await this.ask(Stk500V1.leave());
   }
 
   private async seek(address: number): Promise<boolean> {
-    const word = address / 2;
-    return await this.ask([letter("U"), word & 0xff, word >> 8]) !== null;
+    return await this.ask(Stk500V1.loadAddress(address / 2)) !== null;
   }
 
-  private async ask(command: readonly number[], count = 0): Promise<Uint8Array | null> {
-    this.talk.write(Uint8Array.of(...command, END));
-    const answer = await this.talk.read(count + 2);
-    return answer[0] === IN_SYNC && answer[count + 1] === OK ? answer.subarray(1, -1) : null;
+  private async ask({ asks, answer }: Question): Promise<Uint8Array | null> {
+    this.talk.write(asks);
+    return keep(await this.talk.read(answer.length), answer);
   }
 }
 
-const START = 0x1b;
-const TOKEN = 0x0e;
-const COMMAND = { sign_on: 0x01, load_address: 0x06, leave: 0x11, program_flash: 0x13, read_flash: 0x14, spi: 0x1d };
-const DONE = 0;
-const BEYOND_64_KB = 0x80; // the top bit of an address
-// The command that writes a page, and the way to wait, for a programmer; a bootloader knows that by itself.
-const HOW_TO_WRITE = [0xc1, 10, 0x40, 0x4c, 0x20, 0, 0];
-
-/** The Mega's: messages with start, sequence number, length, token, body and checksum. */
+/** The Mega's. */
 class Version2 implements Bootloader {
-  private sequence = 0;
+  private sequence = 1; // with 1 every bootloader takes a message, older ones else only with the next number
   private at: number | null = null; // where it goes on by itself
 
   constructor(private readonly talk: Talk) {}
 
   enter(): Promise<boolean> {
-    const named = [..."AVRISP_2"].map(letter);
-    return this.talk.hears(this.message([COMMAND.sign_on]), [TOKEN, COMMAND.sign_on, DONE, named.length, ...named]);
+    const { asks, answer } = Stk500V2.enter();
+    return this.talk.hears(this.message(asks), answer);
   }
 
-  /** Byte by byte, as SPI commands that the bootloader answers itself. */
   async signature(): Promise<Uint8Array | null> {
     const found: number[] = [];
     for (const index of [0, 1, 2]) {
-      const answer = await this.ask([COMMAND.spi, 4, 4, 0, 0x30, 0, index, 0]);
-      if (answer?.length !== 7) return null;
-      found.push(answer[5]!);
+      const byte = await this.ask(Stk500V2.signature(index));
+      if (!byte) return null;
+      found.push(...byte);
     }
     return Uint8Array.from(found);
   }
@@ -107,55 +92,49 @@ class Version2 implements Bootloader {
   }
 
   private async program(content: Uint8Array): Promise<boolean> {
-    const written = await this.ask([COMMAND.program_flash, ...size(content.length), ...HOW_TO_WRITE, ...content]) !== null;
+    const written = await this.ask(Stk500V2.writePage(content)) !== null;
     this.at = written && this.at !== null ? this.at + content.length : null;
     return written;
   }
 
   async read(address: number, count: number): Promise<Uint8Array | null> {
     if (!await this.seek(address)) return null;
-    const answer = await this.ask([COMMAND.read_flash, ...size(count), 0x20]);
-    this.at = answer ? address + count : null;
-    return answer?.length === count + 3 && answer.at(-1) === DONE ? answer.subarray(2, -1) : null;
+    const found = await this.ask(Stk500V2.readPage(count));
+    this.at = found ? address + count : null;
+    return found;
   }
 
   async leave(): Promise<void> {
-    await this.ask([COMMAND.leave, 1, 1]);
+    await this.ask(Stk500V2.leave());
   }
 
   private async seek(address: number): Promise<boolean> {
     if (this.at === address) return true;
-    const word = address / 2;
-    const there = await this.ask([COMMAND.load_address, BEYOND_64_KB, word >> 16, ...size(word & 0xffff)]) !== null;
+    const there = await this.ask(Stk500V2.loadAddress(address / 2)) !== null;
     this.at = there ? address : null;
     return there;
   }
 
-  private message(body: readonly number[]): Uint8Array {
+  private message(body: readonly number[]): number[] {
+    const bytes = Stk500V2.message(this.sequence, body);
+    return [...bytes, checksum(bytes)];
+  }
+
+  private async ask({ asks, answer }: Question): Promise<Uint8Array | null> {
     this.sequence = (this.sequence + 1) & 0xff;
-    const bytes = [START, this.sequence, ...size(body.length), TOKEN, ...body];
-    return Uint8Array.of(...bytes, checksum(bytes));
-  }
-
-  /** The body of the answer, where that says that all went well. */
-  private async ask(body: readonly number[]): Promise<Uint8Array | null> {
-    this.talk.write(this.message(body));
-    const head = await this.talk.read(5);
-    if (head.length < 5 || head[0] !== START || head[1] !== this.sequence || head[4] !== TOKEN) return null;
-    const rest = await this.talk.read(head[2]! * 256 + head[3]! + 1);
-    const sound = checksum([...head, ...rest]) === 0 && rest[0] === body[0] && rest[1] === DONE;
-    return sound ? rest.subarray(0, -1) : null;
+    this.talk.write(this.message(asks));
+    const pattern = [...Stk500V2.message(this.sequence, answer), ANY];
+    const heard = await this.talk.read(pattern.length);
+    return checksum(heard) === 0 ? keep(heard, pattern) : null;
   }
 }
 
-function size(count: number): [high: number, low: number] {
-  return [count >> 8, count & 0xff];
+function checksum(bytes: Iterable<number>): number {
+  return [...bytes].reduce((sum, byte) => sum ^ byte, 0);
 }
 
-function checksum(bytes: readonly number[]): number {
-  return bytes.reduce((sum, byte) => sum ^ byte, 0);
-}
+const LANGUAGES: Readonly<Record<number, new (talk: Talk) => Bootloader>> = { 1: Version1, 2: Version2 };
 
-export function bootloaderOf(speaks: Speaks, talk: Talk): Bootloader {
-  return speaks === "STK500 version 1" ? new Version1(talk) : new Version2(talk);
+export function bootloaderOf(language: number, talk: Talk): Bootloader {
+  return new LANGUAGES[language]!(talk);
 }

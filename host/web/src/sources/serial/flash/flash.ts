@@ -1,16 +1,17 @@
 // Flashes a board: finds its bootloader and its chip, refuses what is for another, writes, and reads all of it back.
 
+import { noBootloader, otherChip, wrongByte } from "../../../files/rules";
 import { LinkError } from "../../../link/declared";
+import { upperFirst } from "../../../link/refusal";
 import type { NamedText } from "../../../parts/named_text";
 import type { Report } from "../../../session/port";
 import { bootloaderOf, type Bootloader } from "./bootloader";
-import { checkImage, ERASED, hex, readImage, type Image } from "./image";
+import { checkImage, hex, readImage, type Image } from "./image";
+import { ATTEMPTS, ERASED, LOOP, ROUNDS, TARGETS } from "./rules";
 import { Talk } from "./talk";
-import { TARGETS, titleOf, type Dialect, type Target } from "./targets";
+import { titleOf, type Target } from "./targets";
 
-const ROUNDS = 3;
-const ATTEMPTS = 3;
-const LOOP = [0xff, 0xcf]; // rjmp to itself, with interrupts off and all pins inputs as after every restart
+type Dialect = { readonly language: number; readonly baud: number };
 
 /** Writes the file, or else the firmware of the board that answers; the board's name. The port is closed afterwards. */
 export async function flash(
@@ -52,7 +53,7 @@ async function writeFirst(port: SerialPort, dialect: Dialect, wanted: Uint8Array
   for (let left = ATTEMPTS; left; left--) {
     const talk = await Talk.open(port, dialect.baud);
     try {
-      const bootloader = bootloaderOf(dialect.speaks, talk);
+      const bootloader = bootloaderOf(dialect.language, talk);
       if (!await bootloader.enter()) continue;
       await boardOf(bootloader); // the first question may be lost
       await bootloader.write(0, content);
@@ -76,17 +77,17 @@ async function readImages(
 }
 
 async function findBootloader(port: SerialPort): Promise<{ talk: Talk; dialect: Dialect; bootloader: Bootloader }> {
-  const dialects = TARGETS.flatMap((board) => board.dialects);
+  const dialects = TARGETS.flatMap(({ language, bauds }) => bauds.map((baud): Dialect => ({ language, baud })));
   for (let round = 0; round < ROUNDS; round++) {
     for (const dialect of dialects) {
       const talk = await Talk.open(port, dialect.baud);
-      const bootloader = bootloaderOf(dialect.speaks, talk);
+      const bootloader = bootloaderOf(dialect.language, talk);
       if (await bootloader.enter()) return { talk, dialect, bootloader };
       await talk.close();
     }
   }
   const bauds = [...new Set(dialects.map(({ baud }) => baud))].join(" and ");
-  throw new LinkError(`No bootloader answers at ${bauds} baud; check that the board's reset works, or burn a bootloader with a programmer.`);
+  throw new LinkError(upperFirst(noBootloader({ bauds })));
 }
 
 async function boardOf(bootloader: Bootloader): Promise<Target> {
@@ -97,7 +98,8 @@ async function boardOf(bootloader: Bootloader): Promise<Target> {
   const board = TARGETS.find((one) => one.signature === hexSignature);
   if (board) return board;
   const known = TARGETS.map((one) => `${titleOf(one)} (${one.signature})`).join(" and ");
-  throw new LinkError(`The chip has ${hexSignature ? `signature ${hexSignature}` : "no readable signature"}; greywhale runs on ${known} only.`);
+  const told = hexSignature ? `signature ${hexSignature}` : "no readable signature";
+  throw new LinkError(upperFirst(otherChip({ signature: told, known })));
 }
 
 async function writeImage(bootloader: Bootloader, { memory }: Image, { page }: Target, report: Report): Promise<void> {
@@ -124,7 +126,8 @@ async function verify(bootloader: Bootloader, { memory }: Image, { page }: Targe
     const wrong = wanted.findIndex((byte, i) => byte !== found[i]);
     if (wrong >= 0) {
       const [is, was] = [hex(found.subarray(wrong, wrong + 1)), hex(wanted.subarray(wrong, wrong + 1))];
-      throw new LinkError(`The board holds 0x${is} at address 0x${(at + wrong).toString(16)} instead of 0x${was}; flash it again.`);
+      const address = `0x${(at + wrong).toString(16)}`;
+      throw new LinkError(upperFirst(wrongByte({ found: `0x${is}`, address, wanted: `0x${was}` })));
     }
     report("verifying", (at + page) / memory.length);
   }

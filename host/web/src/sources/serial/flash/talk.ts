@@ -1,14 +1,7 @@
 // A line to a bootloader, an answer at a time.
 
 import { SerialLine, wait } from "../line";
-
-const START_MS = 100; // from the reset until a bootloader listens: the start-up delay of an Arduino's fuses is 65 ms
-// A bootloader that listens answers the first question. Optiboot, of newer Nanos, looks at nothing while it flashes its LED
-// for 375 ms, and has room for one question then.
-const ASK_EVERY_MS = 400;
-const QUESTIONS = 2;
-const STILL_MS = 100; // after the last answer to a question that was asked twice
-const ANSWER_MS = 500;
+import { ANSWER_MS, ASK_EVERY_MS, QUESTIONS, START_MS, STILL_MS } from "./rules";
 
 export class Talk {
   private heard: number[] = [];
@@ -30,8 +23,8 @@ export class Talk {
     return talk;
   }
 
-  write(data: Uint8Array): void {
-    this.line.write(data);
+  write(data: readonly number[]): void {
+    this.line.write(Uint8Array.from(data));
   }
 
   close(): Promise<void> {
@@ -45,7 +38,7 @@ export class Talk {
   }
 
   /** Asks again and again until the answer comes; whether it did. */
-  async hears(question: Uint8Array, answer: readonly number[]): Promise<boolean> {
+  async hears(question: readonly number[], answer: readonly number[]): Promise<boolean> {
     const words = (bytes: readonly number[]): string => ` ${bytes.join(" ")} `;
     const there = (): boolean => words(this.heard).includes(words(answer));
     for (let left = QUESTIONS; left && !there(); left--) {
