@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -12,20 +11,17 @@ from greywhale.base.errors import UserError
 from greywhale.board import flash
 from greywhale.board.flash import platformio
 from greywhale.board.flash.bootloader import Bootloader, Dialect, find_bootloader
-from greywhale.board.flash.images import read_image, read_pieces
+from greywhale.board.flash.images import read_image
 from greywhale.board.flash.rules import BOARDS
 from greywhale.cli.story import BenchProcess
 from greywhale.protocol import schema
 from greywhale.protocol.transport import BAUD, LINES, Line
-from greywhale_sim import assemble
 from greywhale_sim.assemble import BUILDS
-from greywhale_sim.wiring import NANO
 from greywhale_sim.words import lock_step
 from tests.board.flash.hex_files import hex_text
-from tools import ROOT
+from tests.board.flash.newer_nano import fit_optiboot
 
 IMAGES = {name: BUILDS / board.environment / "firmware.hex" for name, board in flash.BOARDS.items()}
-OPTIBOOT = ROOT / "tests/board/flash/bootloaders/optiboot.hex"
 Start = Callable[..., BenchProcess]
 
 
@@ -116,12 +112,8 @@ def test_bytes_that_are_lost_both_ways_do_no_harm(board: str, count: int) -> Non
 
 @pytest.mark.slow
 def test_flash_a_newer_nano(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """With optiboot, which first flashes its LED and loses questions meanwhile. It runs anywhere, and here has room."""
-    code = read_pieces(OPTIBOOT)[0][1]
-    (tmp_path / "optiboot.hex").write_text(hex_text(code, start=0x7C00))
+    fit_optiboot(tmp_path, monkeypatch)
     (tmp_path / "loop.hex").write_text(hex_text(b"\xff\xcf"))
-    nano = replace(NANO, bootloader=tmp_path / "optiboot.hex", bootloader_baud=115200)
-    monkeypatch.setattr(assemble, "BOARDS", {"nano": nano})
     image = read_image(IMAGES["nano"]).memory
     with lock_step("--board", "nano", "--firmware", str(tmp_path / "loop.hex")) as bench:
         hello = flash.flash(bench.port, hex_file=IMAGES["nano"])

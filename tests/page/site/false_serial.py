@@ -6,7 +6,7 @@ import contextlib
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from playwright.sync_api import BrowserContext, Page
 
@@ -20,6 +20,14 @@ ANSWER_S, TURN_S, BOOTLOADER_TURN_S = 0.01, 0.06, 0.04
 SCRIPT = Path(__file__).with_name("false_serial.js").read_text("utf-8")
 
 
+class Sent(NamedTuple):
+    """Bytes that the page has written: at which speed, and when in the board's time."""
+
+    baud: int
+    at_s: float
+    text: str
+
+
 class Cable:
     """From the page's port to a bench: it can be unplugged, and a port that is opened may restart the board."""
 
@@ -27,6 +35,7 @@ class Cable:
         self.plugged = True
         self.opening_restarts = False
         self.restarts = 0
+        self.sent: list[Sent] = []
         self._bench = bench
         self._line: Line | None = None
         self._baud = 0
@@ -37,6 +46,7 @@ class Cable:
             return self._open(given)
         if self._line is not None:
             self._line.write(given.encode("latin-1"))
+            self.sent.append(Sent(self._baud, self._line.clock(), given))
         if what == "close" or not self.plugged:
             self._close()
         elif what == "restart":

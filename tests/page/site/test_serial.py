@@ -22,10 +22,11 @@ from greywhale.protocol.table import ParameterTable
 from greywhale_sim.lockstep import LockStepBench
 from greywhale_sim.person_commands import ENDS_DEG
 from greywhale_sim.words import lock_step
+from tests.board.flash import newer_nano
 from tests.board.flash.hex_files import hex_text
 from tests.files.older_parameters import write_older
 from tests.page.barriers import DARK_AND_NARROW, require_no_barrier
-from tests.page.site.false_serial import connected
+from tests.page.site.false_serial import Sent, connected
 from tests.page.site.serve_folder import Site
 
 pytestmark = pytest.mark.slow
@@ -188,12 +189,10 @@ def test_a_board_is_watched_driven_and_changed(context: BrowserContext, site: Si
         assert stored.each("joint", "limit_max")[:2] == pytest.approx([highest] * 2, abs=60)
 
 
-@pytest.mark.parametrize(
-    ("board", "other", "title"), [("mega", "nano", "Mega 2560"), ("nano", "mega", "Nano (ATmega328P)")]
-)
-def test_a_board_of_another_program_is_flashed_and_the_other_boards_image_refused(
+def flash_a_board_of_another_program(
     context: BrowserContext, site: Site, folder: Path, tmp_path: Path, board: str, other: str, title: str
-) -> None:
+) -> list[Sent]:
+    """Refuse the other board's image, break a flash off, and flash; what the page has sent."""
     (parts,) = (path for path in folder.iterdir() if path.is_dir())
     image = read_image(parts / f"{board}.hex").memory
     before = tmp_path / "before.hex"
@@ -218,3 +217,36 @@ def test_a_board_of_another_program_is_flashed_and_the_other_boards_image_refuse
         expect(page.locator(".pill")).to_have_text("disabled")
         assert bench.server.board.flash()[: len(image)] == image
         assert page.evaluate("portOpenAtRequest") == 2 * [False, False]  # a bootloader does not wait for a slow network
+        return cable.sent
+
+
+def test_a_mega_is_flashed_and_a_nanos_image_refused(
+    context: BrowserContext, site: Site, folder: Path, tmp_path: Path
+) -> None:
+    flash_a_board_of_another_program(context, site, folder, tmp_path, "mega", "nano", "Mega 2560")
+
+
+NANO = ("nano", "mega", "Nano (ATmega328P)")
+FLASHES_S = 0.375  # of optiboot's LED
+
+
+def asked_as_optiboot(sent: list[Sent]) -> list[float]:
+    """When the page asked whether optiboot is there."""
+    return [one.at_s for one in sent if (one.baud, one.text) == (newer_nano.BAUD, "0 ")]
+
+
+def test_an_older_nano_is_flashed_and_a_megas_image_refused(
+    context: BrowserContext, site: Site, folder: Path, tmp_path: Path
+) -> None:
+    """It is silent at the newer Nano's speed, so each of three times the page asks there twice."""
+    asked = asked_as_optiboot(flash_a_board_of_another_program(context, site, folder, tmp_path, *NANO))
+    assert len(asked) == 6
+    assert all(second - first > FLASHES_S for first, second in zip(asked[::2], asked[1::2], strict=True))
+
+
+def test_a_newer_nano_is_flashed_and_asked_once_while_its_led_flashes(
+    context: BrowserContext, site: Site, folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Each of four times that it starts: three times to be found, and once for its first page."""
+    newer_nano.fit_optiboot(tmp_path, monkeypatch)
+    assert len(asked_as_optiboot(flash_a_board_of_another_program(context, site, folder, tmp_path, *NANO))) == 4
