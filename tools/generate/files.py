@@ -1,4 +1,4 @@
-"""Writes the page's rules for files: the host's schemas, kinds of files, limits of TOML, and sentences of refusal."""
+"""Writes the page's rules for files: schemas, kinds of files, limits of TOML, the layout of logs, and sentences."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ from greywhale.base import sentences
 from greywhale.base.formats import toml_file
 from greywhale.base.formats.kinds import Kind
 from greywhale.files.controller import Controller, stored_as
+from greywhale.files.log import check, layout, parameters
 from greywhale.protocol.schema import PARAMETER_BY_NAME
 from tools.generate.current import keep_current
 from tools.generate.names import camel
@@ -41,12 +42,26 @@ _NOTHING = (None, "", ())
 
 def text() -> str:
     """The whole module."""
-    parts = [_limits(), _kinds(), _types(), _controller(), "\n".join(_sentences())]
+    parts = [_log(), _limits(), _kinds(), _types(), _controller(), "\n".join(_sentences())]
     return HEAD + "\n\n".join(parts) + "\n"
 
 
 def _constant(name: str, value: object, kind: str = "") -> str:
     return f"export const {name}{kind and f': {kind}'} = {json.dumps(value, ensure_ascii=False)};"
+
+
+def _log() -> str:
+    """The layout of a log."""
+    facts = {
+        "title": layout.TITLE,
+        "check": check.KEY,
+        "parameters": parameters.KEY,
+        "complete": layout.COMPLETE,
+        "heading": layout.HEADING,
+        "timeDigits": layout.TIME_DIGITS,
+        "quantities": list(layout.QUANTITIES.items()),
+    }
+    return f"export const LOG = {json.dumps(facts)} as const;"
 
 
 def _limits() -> str:

@@ -3,8 +3,8 @@
 import { LinkError } from "../link/declared";
 import { TABLE } from "../link/schema";
 import type { NamedText } from "../parts/named_text";
-import { physicalText } from "../session/log";
 import { isNumber, isTable } from "./check";
+import { physicalText } from "./log";
 import type { Toml, TomlTable } from "./toml_types";
 import { inFile, rawAsGiven, shown } from "./raw_value";
 import { missingParameter, noNumber, notBelow, unknownKey } from "./rules";

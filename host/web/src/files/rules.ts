@@ -3,6 +3,8 @@
 
 import type { FileKind, Schema } from "./schema_types";
 
+export const LOG = {"title": "greywhale log 1", "check": "check", "parameters": "parameters", "complete": "complete", "heading": "time_s,leader_0,leader_1,leader_2,leader_3,follower_0,follower_1,follower_2,follower_3,voltage_0,voltage_1,voltage_2,voltage_3,state", "timeDigits": 6, "quantities": [["leader", 6], ["follower", 6], ["voltage", 3]]} as const;
+
 export const LONGEST_TEXT = 4194304;
 export const DEEPEST_LEVEL = 24;
 export const LARGEST_INTEGER = 9223372036854775808n;

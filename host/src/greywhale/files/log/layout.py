@@ -10,13 +10,10 @@ from greywhale.protocol.table import ParameterTable
 
 TITLE = "greywhale log 1"
 STATES = ("boot", "disabled", "soft_start", "following", "fault")
-COLUMNS = (
-    "time_s",
-    *(f"leader_{joint}" for joint in range(JOINTS)),
-    *(f"follower_{joint}" for joint in range(JOINTS)),
-    *(f"voltage_{joint}" for joint in range(JOINTS)),
-    "state",
-)
+# Each for joint 0..3, and its digits after the point: rad, rad, V.
+QUANTITIES = {"leader": 6, "follower": 6, "voltage": 3}
+TIME_DIGITS = 6  # of s
+COLUMNS = ("time_s", *(f"{quantity}_{joint}" for quantity in QUANTITIES for joint in range(JOINTS)), "state")
 HEADING = ",".join(COLUMNS)
 
 # How a recording ended, as the header says it.

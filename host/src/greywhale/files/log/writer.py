@@ -19,11 +19,23 @@ from typing import Self
 from greywhale.base.errors import UserError, cut, os_reason
 from greywhale.base.formats.draft import Draft, sync
 from greywhale.files.log.check import KEY, add_rows, check_text, facts_of
-from greywhale.files.log.layout import COMPLETE, HEADING, INTERRUPTED, STATES, TITLE, UNFINISHED, Origin
+from greywhale.files.log.layout import (
+    COMPLETE,
+    HEADING,
+    INTERRUPTED,
+    QUANTITIES,
+    STATES,
+    TIME_DIGITS,
+    TITLE,
+    UNFINISHED,
+    Origin,
+)
 from greywhale.files.log.parameters import lines_of
+from greywhale.protocol.firmware import JOINTS
 from greywhale.protocol.joints import ALL, listed
 
-_ROW = ",".join(["%.6f"] * 9 + ["%.3f"] * 4) + ",%s\n"  # s, rad, V
+_DIGITS = (TIME_DIGITS, *(digits for digits in QUANTITIES.values() for _ in range(JOINTS)))
+_ROW = ",".join(f"%.{digits}f" for digits in _DIGITS) + ",%s\n"
 _ROWS_PER_WRITE = 256  # rows that wait for the file: a quarter of a second at most
 # What is known only at the end: the header keeps so many characters free for each number or word, and for the reason.
 _VALUE_ROOM = 12

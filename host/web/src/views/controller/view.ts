@@ -6,7 +6,7 @@ import { Refusal, TABLE } from "../../link/schema";
 import { upperFirst } from "../../link/refusal";
 import { button, el, select, setText } from "../../parts/dom";
 import type { View } from "../view";
-import { physicalText } from "../../session/log";
+import { physicalText } from "../../files/log";
 import { JOINTS } from "../../session/samples";
 import type { Session } from "../../session/session";
 import { differences, Draft, jointsOf, ofRows, parameterName, rowsOf, withJoints, type Four } from "./draft";

@@ -3,7 +3,7 @@
 import { button, download, el, select, setText, tableHead } from "../../parts/dom";
 import { themeChanged } from "../../parts/theme";
 import type { View } from "../view";
-import { logText } from "../../session/log";
+import { logText } from "../../files/log";
 import { JOINT_NAMES, QUANTITIES, QUANTITY_TITLES, TICKS_A_SECOND } from "../../session/samples";
 import type { Session } from "../../session/session";
 import { Charts } from "./charts";

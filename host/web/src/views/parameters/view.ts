@@ -8,7 +8,7 @@ import { TABLE } from "../../link/schema";
 import { button, download, el, fileField, setText, tableHead } from "../../parts/dom";
 import type { View } from "../view";
 import type { NamedText } from "../../parts/named_text";
-import { physicalText } from "../../session/log";
+import { physicalText } from "../../files/log";
 import type { Session } from "../../session/session";
 
 export class ParametersView implements View {

@@ -3,10 +3,8 @@
 import { Board, type HelloReply, State, TABLE } from "../link/schema";
 import type { Parameter } from "../link/declared";
 import { crc32 } from "../link/crc32";
-import { JOINTS, TICKS_A_SECOND, type Quantity, type Samples } from "./samples";
-
-const COLUMNS = ["leader", "follower", "voltage"] as const satisfies readonly Quantity[];
-const DIGITS: Readonly<Record<(typeof COLUMNS)[number], number>> = { leader: 6, follower: 6, voltage: 3 };
+import { JOINTS, TICKS_A_SECOND, type Samples } from "../session/samples";
+import { LOG } from "./rules";
 
 /** The header's facts on the origin of the samples; `raw` is the board's parameter table, null when it is not read. */
 export type Origin = { readonly hello: HelloReply | null; readonly raw: readonly number[] | null };
@@ -19,18 +17,13 @@ export function logText(samples: Samples, from: number, to: number, origin: Orig
   const covered = [...facts].sort(([a], [b]) => (a < b ? -1 : 1)).map(([key, value]) => `${key}: ${value}\n`).join("");
   const check = crc32(covered, crc32(body)).toString(16).padStart(8, "0");
   const header = facts.map(([key, value]) => `# ${key}: ${value}\n`).join("");
-  const heading = ["time_s", ...COLUMNS.flatMap((name) => joints().map((joint) => `${name}_${joint}`)), "state"];
-  return `# greywhale log 1\n${header}# check: ${rows.length} rows, crc32 ${check}\n${heading.join(",")}\n${body}`;
-}
-
-function joints(): number[] {
-  return Array.from({ length: JOINTS }, (_, joint) => joint);
+  return `# ${LOG.title}\n${header}# ${LOG.check}: ${rows.length} rows, crc32 ${check}\n${LOG.heading}\n${body}`;
 }
 
 function row(samples: Samples, number: number): string {
-  const cells = COLUMNS.flatMap((name) =>
-    joints().map((joint) => samples.value(number, name, joint).toFixed(DIGITS[name])));
-  const time = (samples.timeOf(number) / TICKS_A_SECOND).toFixed(6);
+  const cells = LOG.quantities.flatMap(([name, digits]) =>
+    Array.from({ length: JOINTS }, (_, joint) => samples.value(number, name, joint).toFixed(digits)));
+  const time = (samples.timeOf(number) / TICKS_A_SECOND).toFixed(LOG.timeDigits);
   return `${time},${cells.join(",")},${State.of(samples.state[number % samples.capacity]!).name}\n`;
 }
 
@@ -47,7 +40,7 @@ function headerFacts(samples: Samples, from: number, to: number, { hello, raw }:
   facts.push(["every_ticks", "1"]);
   if (raw) facts.push(...tableLines(raw));
   const ticks = to > from ? samples.timeOf(to - 1) - samples.timeOf(from) + 1 : 0;
-  facts.push(["dropped_samples", String(ticks - (to - from))], ["recording", "complete"], ["ended_by", ""]);
+  facts.push(["dropped_samples", String(ticks - (to - from))], ["recording", LOG.complete], ["ended_by", ""]);
   return facts;
 }
 
@@ -55,7 +48,7 @@ function tableLines(raw: readonly number[]): [string, string][] {
   const groups = new Map<string, string[]>();
   for (const parameter of TABLE.parameters) {
     const dot = parameter.name.lastIndexOf(".");
-    const key = dot < 0 ? "parameters" : `parameters.${parameter.name.slice(0, dot)}`;
+    const key = dot < 0 ? LOG.parameters : `${LOG.parameters}.${parameter.name.slice(0, dot)}`;
     const line = groups.get(key) ?? [];
     groups.set(key, line);
     line.push(`${parameter.name.slice(dot + 1)}=${physicalText(parameter, raw[parameter.index]!)}`);
