@@ -36,6 +36,8 @@ description = "What a stranger adds."
 count = 4
 parameters = [{parameters}]
 """
+# Of another compiler's image facts.toml says nothing: the system's may be any.
+DESCRIBED = [NANO] if NANO.is_described() else []
 NUMBER_BYTES = 4 * 2  # of a parameter of two bytes for each joint
 NUMBERS = (MAX_TABLE_BYTES - len(pack_parameters(DEFAULTS))) // NUMBER_BYTES
 
@@ -94,9 +96,13 @@ def test_more_parameters_fit_the_nano_beside_its_stack(nano: Target) -> None:
     assert deepest.bytes <= deepest.free
 
 
-def test_more_parameters_cost_a_tick_no_more_than_other_addresses_may(nano: Target) -> None:
+def test_more_parameters_bring_nothing_slow_into_a_tick(nano: Target) -> None:
     assert tick.complaints(read_program(nano.elf)) == []
-    assert times(nano).tick <= 1.01 * times(NANO).tick
+
+
+@pytest.mark.parametrize("own", DESCRIBED, ids=lambda target: target.title)
+def test_more_parameters_cost_a_tick_no_more_than_other_addresses_may(nano: Target, own: Target) -> None:
+    assert times(nano).tick <= 1.01 * times(own).tick
 
 
 def test_a_set_with_more_parameters_is_applied_and_makes_no_tick_late(nano: Target) -> None:
