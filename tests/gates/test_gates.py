@@ -10,7 +10,7 @@ import pytest
 from greywhale._native import Board
 from greywhale_sim.programs import load_elf
 from tools import avr_tool
-from tools.gates import size, stack, tick
+from tools.gates import apply, size, stack, tick
 from tools.gates.timing.cycles import MEGA, NANO, Chip
 from tools.gates.timing.listing import ImageError, read_program
 
@@ -108,3 +108,12 @@ def test_what_cannot_be_bounded_is_refused(tmp_path: Path, program: str, reason:
     program = program.replace("uint16_t down", "__attribute__((noinline, optimize(0))) uint16_t down")
     with pytest.raises(ImageError, match=reason):
         stack.bound(build(tmp_path, program), NANO)
+
+
+def test_a_slow_step_and_late_ticks_are_told_apart_each_with_its_step_and_its_numbers() -> None:
+    cycles = {"crc": 9_000, "joint 2": 21_000, "finish": 8_000}
+    assert apply.complaints(apply.Applied(cycles, late_ticks=0)) == []
+    (late,) = apply.complaints(apply.Applied(cycles, late_ticks=3))
+    assert "6 sets has made 3 ticks late; the longest step, `joint 2`, takes 21000 cycles" in late
+    (slow,) = apply.complaints(apply.Applied(cycles | {"finish": apply.LIMIT + 1}, late_ticks=0))
+    assert "the step `finish` of applying a set takes 48001 cycles" in slow

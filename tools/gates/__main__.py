@@ -32,8 +32,8 @@ def check(target: Target) -> list[str]:
     else:
         print(f"{title} time not bounded: facts.toml does not describe the code of this compiler")
     applied = apply.apply_sets(target)
-    longest = max(applied.cycles, key=lambda step: applied.cycles[step])
-    print(f"{title} steps of applying a set at most {applied.cycles[longest]} cycles of {apply.LIMIT}, in `{longest}`")
+    most = applied.cycles[applied.longest]
+    print(f"{title} steps of applying a set at most {most} cycles of {apply.LIMIT}, in `{applied.longest}`")
     found += apply.complaints(applied)
     return [f"{target.title}: {complaint}" for complaint in found]
 

@@ -29,6 +29,11 @@ class Applied:
     cycles: dict[str, int]  # step -> the most that it has taken, interrupts included
     late_ticks: int  # that were counted
 
+    @property
+    def longest(self) -> str:
+        """The step that has taken the most cycles."""
+        return max(self.cycles, key=lambda step: self.cycles[step])
+
 
 def apply_sets(target: Target, crc: Callable[[Sequence[int]], int] = schema.param_crc) -> Applied:
     """Applies the defaults and sets drawn by chance; `crc` is that of the image's table with these values."""
@@ -54,5 +59,8 @@ def complaints(applied: Applied) -> list[str]:
         if cycles > LIMIT
     ]
     if applied.late_ticks:
-        found.append(f"applying sets has made {applied.late_ticks} late ticks; a longer step has made them, see above.")
+        found.append(
+            f"applying {SETS} sets has made {applied.late_ticks} ticks late; the longest step, `{applied.longest}`, "
+            f"takes {applied.cycles[applied.longest]} cycles, and a tick has {PERIOD}: make two steps of it."
+        )
     return found
