@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from scipy.stats import poisson
 
 from tools.attack import chance
 from tools.attack.native import FAST, ROOMS_OF_SETS, Program, run_counts
@@ -10,21 +11,27 @@ from tools.attack.native import FAST, ROOMS_OF_SETS, Program, run_counts
 pytestmark = pytest.mark.slow
 PROGRAM = Program("eeprom_faults", ("eeprom_faults", "sets"), FAST, ROOMS_OF_SETS)
 SEED, DAMAGED, MIGRATED = 1, 20_000, 500
-# 1 to 8 flipped bits in a bank; 1 to 8 bytes changed, also where banks are of an older layout; a run of 2 to 300 bytes
-# erased, cleared or overwritten; the banks, or a part of them, swapped; a bank erased whole.
-DAMAGES = (*(f"bits{count}" for count in range(1, 9)), "bytes", "old", "runs", "swapped", "erased")
-MOST_MATCHES = 2 * chance.CRC_MATCH  # both banks may be damaged; an even number of flipped bits passes with 2^-15
+# The share of each damage that passes the CRC by chance. Its polynomial is divisible by x + 1 and its period is
+# longer than a bank: no odd number of flipped bits passes, nor do two. So of an even number twice as many pass as of
+# other damage. An erased bank has no magic.
+CRC_ODDS = {
+    **{f"bits{count}": 0.0 if count % 2 or count == 2 else 2 * chance.CRC_MATCH for count in range(1, 9)},
+    "bytes": chance.CRC_MATCH,  # 1 to 8 of them changed
+    "old": chance.CRC_MATCH,  # the same, where banks are of an older layout
+    "runs": chance.CRC_MATCH,  # of 2 to 300 bytes erased, cleared or overwritten; only the first bank keeps its magic
+    "swapped": chance.CRC_MATCH,  # the banks, or a part of them: what passes in one bank passes in both
+    "erased": 0.0,  # a bank, whole
+}
+RARE = 1e-4  # a change of the table draws all damages anew, and must not fail here by chance
 
 
-@pytest.mark.parametrize("damage", DAMAGES)
-def test_a_damaged_bank_is_noticed_and_an_older_set_runs(damage: str) -> None:
+@pytest.mark.parametrize(("damage", "odds"), CRC_ODDS.items(), ids=CRC_ODDS)
+def test_a_damaged_bank_is_noticed_and_an_older_set_runs(damage: str, odds: float) -> None:
     counts = run_counts(PROGRAM, [damage, SEED, DAMAGED])
     matches = counts.pop("collisions", 0)
     assert set(counts) == {"trials", "newest runs", "lost and told"}
     assert counts["lost and told"] > DAMAGED / 3
-    assert not chance.too_many(matches, MOST_MATCHES * DAMAGED)
-    if damage in {"bits1", "bits2", "bits3", "erased"}:
-        assert matches == 0, "a CRC notices any three bits"
+    assert matches <= (poisson.isf(RARE, odds * DAMAGED) if odds else 0)
 
 
 def test_sets_of_an_older_firmware_come_over_and_are_saved_whole() -> None:
