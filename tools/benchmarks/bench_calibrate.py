@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from greywhale.base.study import Task
-from greywhale.board.calibrate.motors import PULSE_SHARES
+from greywhale.board.calibrate.rules import PULSE_SHARES
 from greywhale.cli.entry import run as verb
 from greywhale.cli.story import RunningBench, record_motion
 from greywhale.files.arm import default_arm

@@ -8,6 +8,7 @@ NB_MODULE(_native, m) {
   bind_band_power(m);
   bind_board(m);
   bind_bench(m);
+  bind_calibrate(m);
   bind_closed_loop(m);
   bind_elementary(m);
   bind_fuzzy(m);

@@ -7,7 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from greywhale.board.calibrate.motors import LEASE_MS, PULSE_SHARES
+from greywhale.board.calibrate.motors import LEASE_MS
+from greywhale.board.calibrate.rules import PULSE_SHARES
 from greywhale.board.device import Device
 from greywhale.cli.entry import run
 from greywhale.cli.story import RunningBench

@@ -7,7 +7,8 @@ from dataclasses import dataclass, field
 import numpy as np
 import pytest
 
-from greywhale.board.calibrate.motors import LEASE_MS, PULSE_SHARES, PULSE_WAY_RAD, pulse_table
+from greywhale.board.calibrate.motors import LEASE_MS, PULSE_WAY_RAD, pulse_table
+from greywhale.board.calibrate.rules import PULSE_SHARES
 from greywhale.protocol import schema
 from greywhale.protocol.firmware import STEP_LSB
 from greywhale.protocol.table import ParameterTable

@@ -9,8 +9,8 @@ import pytest
 from playwright.sync_api import BrowserContext, Page, expect
 
 from greywhale.base.errors import UserError
-from greywhale.board.calibrate.motors import LEASE_MS, PULSE_SHARES
-from greywhale.board.calibrate.solve import MARGIN_RAD
+from greywhale.board.calibrate.motors import LEASE_MS
+from greywhale.board.calibrate.rules import MARGIN_RAD, PULSE_SHARES
 from greywhale.board.device import Device
 from greywhale.board.flash.images import read_image
 from greywhale.board.pots import POTS

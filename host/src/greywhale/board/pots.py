@@ -9,6 +9,7 @@ from itertools import islice
 import numpy as np
 from numpy.typing import NDArray
 
+from greywhale import _native
 from greywhale.base.errors import UserError
 from greywhale.board.device import Device
 from greywhale.board.refusal import lower_first, pot_name
@@ -20,7 +21,6 @@ FOLLOWERS = range(4, 8)
 POTS = tuple(f"{side}{joint}" for side in ("leader", "follower") for joint in range(4))
 LOOK_SAMPLES = 100  # of a millisecond each
 FULL_SCALE = 1023  # counts of the 10-bit converter
-_ANGLE_SHIFT = 13  # angle = ((count14 - zero) * scale) >> 13
 COUNT14_PER_COUNT = 16  # a reading is the sum of 4 conversions, times 4: 14 bits
 
 
@@ -85,12 +85,10 @@ def counts_of(samples: Iterable[schema.Sample], table: ParameterTable) -> NDArra
 
     A potentiometer that is not there, of scale 0, is said to read the middle: nobody knows, and nothing is wrong.
     """
-    scales = np.array([table[f"{pot}.scale"] for pot in POTS], dtype=float)
-    zeros = np.array([table[f"{pot}.zero"] for pot in POTS], dtype=float)
-    angles = np.array([(*sample.leader, *sample.follower) for sample in samples], dtype=float).reshape(-1, len(POTS))
-    there = scales != 0.0
-    counts: NDArray[np.float64] = (angles * 2**_ANGLE_SHIFT / np.where(there, scales, 1.0) + zeros) / COUNT14_PER_COUNT
-    return np.where(there, counts, FULL_SCALE / 2)
+    scales, zeros = ([table[f"{pot}.{key}"] for pot in POTS] for key in ("scale", "zero"))
+    angles = [[*sample.leader, *sample.follower] for sample in samples]
+    given = np.concatenate([np.ravel(np.asarray(part, dtype=float)) for part in (scales, zeros, angles)])
+    return _native.calibration_rule("counts", given)[0].reshape(-1, len(POTS))
 
 
 def require_good_pots(device: Device, table: ParameterTable, pots: Iterable[int]) -> None:

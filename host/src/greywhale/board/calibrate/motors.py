@@ -15,6 +15,7 @@ import numpy as np
 
 from greywhale.base.errors import UserError
 from greywhale.base.types import Floats
+from greywhale.board.calibrate.rules import ask, words
 from greywhale.board.device import Device, RestartedError
 from greywhale.board.stream import stream
 from greywhale.board.upload import run_set
@@ -22,15 +23,10 @@ from greywhale.protocol import schema
 from greywhale.protocol.firmware import ANGLE_LSB, JOINTS, STEP_LSB
 from greywhale.protocol.table import ParameterTable
 
-PULSE_SHARES = (0.1, 0.17, 0.25, 0.35)  # of the supply, tried one after the other
 LEASE_MS = 160  # motors off by the firmware, whatever this host does; soft start is 100 of it
 PULSE_WAY_RAD = 0.08  # where a pulse sends its joint
 FARTHEST_RAD = 0.16  # of a joint from where it should be: twice a pulse's way
-LEAST_WAY_RAD = 0.02  # half of what lies between a pulse one way and one the other: less is no motion
 STILL_TICKS, STILL_RAD, PATIENCE_TICKS = 200, 0.008, 5000  # an arm that still falls would hide a weak pulse
-WEAK_SHARE = 0.5  # of the others' way a volt: healthy unlike joints are above 0.6, weak ones below 0.45
-MUCH_SUPPLY_SHARE = 0.2  # if every motor needs so much of the supply, the supply is low
-OTHER_JOINT_RATIO = 2.0  # another joint that moves so many times farther has this motor
 SETTLE_TICKS = 250  # watched after the lease, while the joint settles
 _STIFF_KP = 64.0  # so that a small error already gets the whole voltage of the pulse
 
@@ -47,11 +43,6 @@ class Motor:
     volts: float
     way: float
 
-    @property
-    def answer(self) -> float:
-        """rad a volt."""
-        return self.way / self.volts
-
 
 def examine_motor(
     device: Device, table: ParameterTable, joint: int, report: Callable[[float], None] = lambda volts: None
@@ -60,70 +51,31 @@ def examine_motor(
     the potentiometers calibrated; the pulses' own set runs afterwards. Raises UserError where no joint moves, or
     another one.
     """
-    for share in PULSE_SHARES:
-        volts = share * table.supply_v
-        report(volts)
-        weak = pulse_table(table, joint, volts)
+    told, pulses = 0.0, list[Floats]()
+    while True:
+        answer, mistake = ask("motor", joint, table.supply_v, pulses)
+        if mistake:
+            raise UserError(f"{device.port}: {mistake}")
+        if len(answer) == 3:
+            sign, volts, moved = answer.tolist()
+            return Motor(joint, int(sign), volts, moved)
+        volts, way = answer.tolist()
+        if volts != told:
+            report(volts)
+        told = volts
         try:
-            way = _answer(device, weak, joint)
+            pulses.append(pulse(device, pulse_table(table, joint, volts), joint, int(way)))
         except RestartedError as error:
             raise UserError(
                 f"{device.port}: the board restarted while the motor of joint {joint} was driven with {volts:.1f} V "
                 f"({error.cause}): its supply sinks when a motor draws. Give the motors a supply of their own, with a "
                 "common ground, and 1000 uF or more at the drivers, and begin anew."
             ) from None
-        farthest = int(np.argmax(np.abs(way)))
-        if abs(way[farthest]) < LEAST_WAY_RAD:
-            continue
-        if farthest != joint and abs(way[farthest]) > OTHER_JOINT_RATIO * abs(way[joint]):
-            raise UserError(
-                f"{device.port}: the motor of joint {joint} moved joint {farthest}: their motors, or their followers' "
-                "potentiometers, are swapped; exchange the wires at the board, and begin anew."
-            )
-        if abs(way[joint]) >= LEAST_WAY_RAD:
-            return Motor(joint, 1 if way[joint] > 0.0 else -1, volts, float(abs(way[joint])))
-    raise UserError(
-        f"{device.port}: the motor of joint {joint} did not move it with {PULSE_SHARES[-1] * table.supply_v:.1f} V: "
-        "check that the motors' supply is on, the driver's enable, PWM and direction wires, the motor's own wires, and "
-        "that the joint moves freely."
-    )
-
-
-def _answer(device: Device, weak: ParameterTable, joint: int) -> Floats:
-    """Half of what lies between pulses one way and the other, (4,) rad; 0 where two tries do not agree.
-
-    An arm that falls when nobody holds it falls in one pulse and lies still in the next. So the second try has the
-    other order, and the smaller of both counts.
-    """
-    once = _between(device, weak, joint, 1)
-    if np.abs(once).max() < LEAST_WAY_RAD:
-        return once
-    again = -_between(device, weak, joint, -1)
-    return np.where(once * again > 0.0, np.sign(once) * np.minimum(np.abs(once), np.abs(again)), 0.0)
-
-
-def _between(device: Device, weak: ParameterTable, joint: int, way: int) -> Floats:
-    one, other = pulse(device, weak, joint, way), pulse(device, weak, joint, -way)
-    return (one - other) / 2.0
 
 
 def remarks(motors: Sequence[Motor], supply_v: float) -> tuple[str, ...]:
     """Sentences about motors that moved their joints, but with more voltage than one expects."""
-    if motors and min(one.volts for one in motors) >= MUCH_SUPPLY_SHARE * supply_v:
-        return (
-            f"Every motor needed {min(one.volts for one in motors):.1f} V or more to move its joint: check the motors' "
-            f"supply; the board counts on {supply_v:g} V (supply_mv).",
-        )
-    sentences = []
-    for motor in motors:
-        usual = float(np.median([other.answer for other in motors if other is not motor] or [0.0]))
-        if motor.answer < WEAK_SHARE * usual:
-            sentences.append(
-                f"The motor of joint {motor.joint} moved it by {1e3 * motor.answer:.0f} mrad a volt, the others theirs "
-                f"by {1e3 * usual:.0f}: it is weak, or its joint turns hard; check its wires, its driver's current "
-                "limit, and that the joint turns freely by hand."
-            )
-    return tuple(sentences)
+    return tuple(words("remarks", supply_v, [(one.joint, one.volts, one.way) for one in motors]).splitlines())
 
 
 def pulse_table(table: ParameterTable, joint: int, volts: float) -> ParameterTable:

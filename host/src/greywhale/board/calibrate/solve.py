@@ -8,23 +8,19 @@ Two arms held in the same pose must agree: what counts is that the follower does
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from greywhale.base.errors import BadUsage, UserError
-from greywhale.base.types import Floats
+from greywhale.base.types import Flags, Floats
+from greywhale.board.calibrate.rules import ask, words
 from greywhale.board.calibrate.sweep import Sweep
-from greywhale.board.pots import COUNT14_PER_COUNT, FULL_SCALE, POTS
-from greywhale.board.refusal import pot_name, upper_first
+from greywhale.board.pots import COUNT14_PER_COUNT, POTS
 from greywhale.protocol import schema
 from greywhale.protocol.firmware import JOINTS
 from greywhale.protocol.joints import ALL, Joints
-
-SHORTEST_TRACK_RAD, LONGEST_TRACK_RAD = np.radians(180.0), np.radians(450.0)  # the board takes no longer one
-LEAST_TURN_RAD = 0.3  # rad between two poses: with less, a degree in a hand is much of the scale
-SLIPPED_COUNTS = 8.0  # the same pose twice: 40 mrad of a usual track
-MARGIN_RAD = 0.03  # kept from both ends of what the person showed
 
 
 @dataclass(frozen=True)
@@ -74,103 +70,57 @@ def solve(sweeps: Sequence[Sweep], first: Pose, second: Pose | None, track_rad: 
 
     The joints that were swept are those in use. Raises UserError where sweeps and poses contradict each other.
     """
-    signs = np.ones(len(POTS))
-    for sweep in sweeps:
-        signs[sweep.pot] = sweep.direction
+    joints = tuple(sorted({sweep.pot % JOINTS for sweep in sweeps}))
     if second is not None:
-        scale = _between(first, second, signs, sorted(sweep.pot for sweep in sweeps))
-    elif track_rad is not None:
-        scale = signs * track_rad / FULL_SCALE
-    else:
+        require_apart(first.angles, second.angles, joints)
+    elif track_rad is None:
         raise UserError("neither a second pose nor the tracks' length is known; give one of them.")
-    zero: Floats = first.counts - np.tile(first.angles, 2) / scale
-    found = Calibration(zero, scale, np.zeros((JOINTS, 2)), tuple(sorted({sweep.pot % JOINTS for sweep in sweeps})))
-    return replace(found, limits=_limits(found, sweeps))
+    known: list[ArrayLike] = [track_rad or 0.0] if second is None else [second.angles, second.counts]
+    return _calibration("solve", sweeps, joints, first.angles, first.counts, *known)
 
 
 def match(calibration: Calibration, sweeps: Sequence[Sweep], first: Pose, same: Pose) -> Calibration:
     """Let the follower agree with the leader in a pose whose angles nobody knows; `same.angles` are not used."""
-    leader = calibration.angles(same.counts)[:JOINTS]
-    turned = leader - first.angles
-    moved = same.counts[JOINTS:] - first.counts[JOINTS:]
-    scale = calibration.scale.copy()
-    for joint in calibration.joints:
-        if abs(turned[joint]) >= LEAST_TURN_RAD:
-            scale[JOINTS + joint] = turned[joint] / moved[joint]
-    zero = calibration.zero.copy()
-    zero[JOINTS:] = first.counts[JOINTS:] - first.angles / scale[JOINTS:]
-    found = replace(calibration, zero=zero, scale=scale)
-    return replace(found, limits=_limits(found, sweeps))
+    known = (calibration.zero, calibration.scale, first.angles, first.counts, same.counts)
+    return _calibration("match", sweeps, calibration.joints, *known)
 
 
 def slipped(before: Pose, after: Pose) -> list[str]:
     """A sentence for each potentiometer that reads something else where the same pose is held again."""
-    apart = np.abs(after.counts - before.counts)
-    return [
-        f"{upper_first(pot_name(pot))} reads {apart[pot]:.0f} counts elsewhere in the same pose: it "
-        "slips on its shaft; tighten it, and begin anew."
-        for pot in range(len(POTS))
-        if apart[pot] > SLIPPED_COUNTS
-    ]
+    return words("slipped", before.counts, after.counts).splitlines()
 
 
 def require_apart(first: Floats, second: Floats, joints: Sequence[int]) -> None:
     """Refuse two poses (4,), rad, from which no scale can be told."""
-    for joint in joints:
-        turned = second[joint] - first[joint]
-        if abs(turned) < LEAST_TURN_RAD:
-            raise BadUsage(
-                f"the two poses differ by {turned:.2g} rad at joint {joint}; choose a second pose that differs by "
-                f"{LEAST_TURN_RAD:g} rad or more at every joint."
-            )
+    if alike := words("require_apart", first, second, _in_use(joints)):
+        raise BadUsage(alike)
 
 
-def _between(first: Pose, second: Pose, signs: Floats, pots: Sequence[int]) -> Floats:
-    """Scales of these potentiometers from two poses; they must agree with the directions of the sweeps."""
-    require_apart(first.angles, second.angles, sorted({pot % JOINTS for pot in pots}))
-    turned = np.tile(second.angles - first.angles, 2)
-    moved = second.counts - first.counts
-    scale = np.ones(len(POTS))
-    for pot in pots:
-        name = pot_name(pot)
-        track = abs(turned[pot] / moved[pot]) * FULL_SCALE if moved[pot] else np.inf
-        if not SHORTEST_TRACK_RAD <= track <= LONGEST_TRACK_RAD:
-            raise UserError(
-                f"{name} read {first.counts[pot]:.0f} and {second.counts[pot]:.0f} in the two poses: as if its track "
-                f"had {np.degrees(track):.0f} degrees; hold the poses again, and check that its shaft does not slip."
-            )
-        scale[pot] = turned[pot] / moved[pot]
-        if np.sign(scale[pot]) != signs[pot]:
-            raise UserError(
-                f"{name} turned the other way between the poses than in its sweep; in the sweep, turn towards the "
-                "positive end first."
-            )
-    return scale
+def apart(found: Calibration, pose: Pose) -> tuple[Floats, str]:
+    """The distance between the arms (4,) rad in a pose from which nothing was worked out; a sentence if that is far."""
+    return ask("apart", _in_use(found.joints), found.zero, found.scale, pose.counts)
 
 
-def _limits(found: Calibration, sweeps: Sequence[Sweep]) -> Floats:
-    """(4, 2): what both arms can reach, without the margin."""
-    ends = np.zeros((len(POTS), 2))
+def _calibration(rule: str, sweeps: Sequence[Sweep], joints: Joints, *known: ArrayLike) -> Calibration:
+    """Zeros, scales and limits of a rule. Raises UserError where it has none."""
+    columns = np.tile([[1.0], [0.0], [0.0]], len(POTS))
     for sweep in sweeps:
-        pair = (np.array([sweep.low, sweep.high]) - found.zero[sweep.pot]) * found.scale[sweep.pot]
-        ends[sweep.pot] = np.sort(pair)
-    low = np.maximum(ends[:JOINTS, 0], ends[JOINTS:, 0]) + MARGIN_RAD
-    high = np.minimum(ends[:JOINTS, 1], ends[JOINTS:, 1]) - MARGIN_RAD
-    for joint in found.joints:
-        if low[joint] >= high[joint]:
-            raise UserError(
-                f"joint {joint} has no range that both arms can reach: the leader goes from {ends[joint, 0]:.2f} to "
-                f"{ends[joint, 1]:.2f} rad, the follower from {ends[JOINTS + joint, 0]:.2f} to "
-                f"{ends[JOINTS + joint, 1]:.2f}; hold both arms in the same pose, and sweep to both ends."
-            )
-    return np.column_stack([low, high])
+        columns[:, sweep.pot] = sweep.direction, sweep.low, sweep.high
+    numbers, mistake = ask(rule, _in_use(joints), columns, *known)
+    if mistake:
+        raise UserError(mistake)
+    zero, scale, limits = np.split(numbers, [len(POTS), 2 * len(POTS)])
+    return Calibration(zero, scale, limits.reshape(JOINTS, 2), joints)
+
+
+def _in_use(joints: Sequence[int]) -> Flags:
+    return np.isin(np.arange(JOINTS), joints)
 
 
 def _raw(name: str, value: float) -> int:
     parameter = schema.PARAMETER_BY_NAME[name]
-    low, high = (parameter.to_physical(raw) for raw in (parameter.minimum, parameter.maximum))
-    if name.endswith(("limit_min", "limit_max")):
-        value = min(max(value, low), high)
-    if not low <= value <= high:
-        raise UserError(f"{name} would be {value:.6g}, but it must lie within {low:.6g}..{high:.6g}; begin anew.")
-    return parameter.to_raw(value)
+    kept_within = name.endswith(("limit_min", "limit_max"))
+    numbers, mistake = ask("raw", value, parameter.minimum, parameter.maximum, parameter.lsb, kept_within)
+    if mistake:
+        raise UserError(f"{name} {mistake}")
+    return int(numbers[0])

@@ -5,23 +5,20 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Sequence
 
-import numpy as np
-
 from greywhale.base.errors import UserError
 from greywhale.base.types import Floats
 from greywhale.board.calibrate.person import PersonAnswer, Watch
-from greywhale.board.calibrate.solve import Calibration, Pose, match, slipped, solve
+from greywhale.board.calibrate.rules import ask
+from greywhale.board.calibrate.solve import Calibration, Pose, apart, match, slipped, solve
 from greywhale.board.calibrate.sweep import Sweep, judge_sweep
 from greywhale.board.calibrate.words import MEND, joint_name, sweep_asked
 from greywhale.board.pots import POTS, read_counts
-from greywhale.board.refusal import pot_name, upper_first
+from greywhale.board.refusal import upper_first
 from greywhale.protocol.firmware import JOINTS
 from greywhale.protocol.joints import Joints
 
 HELD_TICKS = 500  # that a pose is looked at
-STILL_COUNTS = 3.0  # of the mean over a tenth of a second, meanwhile
 SCRIPT_TRIES = 3  # of a script
-MOST_APART_RAD = 0.15  # between the arms in the last pose: 9 degrees, more than a hand is wrong by
 _COUNTS = {2: "two", 4: "four", 6: "six", 8: "eight"}
 
 
@@ -97,14 +94,11 @@ class Walk:
         if answer is not PersonAnswer.DONE:
             return answer
         counts = read_counts(self._watch.device, self._watch.table, HELD_TICKS)
-        means = counts[: HELD_TICKS // 100 * 100].reshape(-1, 100, len(POTS)).mean(axis=1)
-        wandered = np.ptp(means, axis=0)
-        worst = int(np.argmax(wandered))
-        if wandered[worst] > STILL_COUNTS:
-            moved = f"{upper_first(pot_name(worst))} moved by {wandered[worst]:.0f} counts; hold both arms still."
+        means, moved = ask("held", counts)
+        if moved:
             self._refuse(what, moved, "the arms were not held still; lay them on a support, and begin anew.")
             return PersonAnswer.AGAIN
-        self._poses[number] = Pose(angles, counts.mean(axis=0))
+        self._poses[number] = Pose(angles, means)
         self._check(number)
         return answer
 
@@ -132,12 +126,7 @@ class Walk:
 
     def _compare(self) -> Floats:
         """The distance between the arms (4,) rad in the last pose; those before fit by themselves."""
-        angles = self._found().angles(self._poses[3].counts)
-        apart: Floats = np.abs(angles[JOINTS:] - angles[:JOINTS])
-        worst = int(np.argmax(apart))
-        if apart[worst] > MOST_APART_RAD:
-            raise UserError(
-                f"{self._watch.device.port}: held in the same pose, leader and follower differ by {apart[worst]:.2f} "
-                f"rad at joint {worst}; hold the poses more exactly, check that no shaft slips, and begin anew."
-            )
-        return apart
+        distances, mistake = apart(self._found(), self._poses[3])
+        if mistake:
+            raise UserError(f"{self._watch.device.port}: {mistake}")
+        return distances

@@ -8,17 +8,12 @@ import numpy as np
 
 from greywhale.arm.parameters import JOINT_NAMES
 from greywhale.base.types import Floats
-from greywhale.board.refusal import pot_name
+from greywhale.board.calibrate.rules import words
+from greywhale.board.refusal import pot_name, upper_first
 from greywhale.protocol.firmware import JOINTS
 from greywhale.protocol.joints import Joints
 
-# The right-hand rule about the arm's axes (docs/arm.md): yaw about up, pitch about its right, roll along the hand.
-POSITIVE_WAYS = (
-    "counter-clockwise, seen from above",
-    "up: the hand rises",
-    "up: the hand rises, while the upper arm is level",
-    "clockwise, seen from the elbow along the hand",
-)
+POSITIVE_WAYS = tuple(words("positive_way", joint) for joint in range(JOINTS))
 HOW_TO_ANSWER = (
     "Enter: done. b: back to the step before. a: this step again. s: this sweep later. q: end; nothing is stored then."
 )
@@ -31,10 +26,7 @@ def joint_name(pot: int) -> str:
 
 
 def sweep_asked(pot: int, number: int, of: int) -> str:
-    return (
-        f"Sweep {number} of {of}: {joint_name(pot)}. Turn it, and no other, slowly to its positive end "
-        f"({POSITIVE_WAYS[pot % JOINTS]}), then to its negative end, and let it rest."
-    )
+    return f"Sweep {number} of {of}: {joint_name(pot)}. {upper_first(words('turn_asked', pot % JOINTS))}"
 
 
 def poses_asked(first: Floats, second: Floats | None, joints: Joints) -> Sequence[tuple[Floats, str]]:
@@ -53,9 +45,7 @@ def poses_asked(first: Floats, second: Floats | None, joints: Joints) -> Sequenc
 def motors_asked(supply_v: float) -> str:
     return (
         "Each motor now gets short weak pulses, of a tenth to a third of the supply. The board counts on "
-        f"{supply_v:g} V: if the motors' supply has not, end here and set supply_mv first. Let the follower hang "
-        "or lie so that every joint can move by 20 degrees to both sides, switch the motors' supply on, and keep a "
-        "hand on its switch."
+        f"{supply_v:g} V: if the motors' supply has not, end here and set supply_mv first. {words('ready_asked')}"
     )
 
 
