@@ -29,9 +29,7 @@ PAGE_ROOMS = ["link", "parts", "session", "files", "tuner", "sources", "views", 
 UNKNOWN_TO_VIEWS = {"sources", "tuner"}
 # A rule that two languages hold is written twice: these files of the page repeat one of Python's, and no others may.
 TWINS = {
-    "session/law.ts",
-    *("tuner/costs.ts", "tuner/search.ts", "tuner/space.ts", "tuner/unrest.ts", "tuner/wolf_whale.ts"),
-    *("views/calibrate/motors.ts", "views/calibrate/solve.ts", "views/calibrate/sweep.ts", "views/calibrate/words.ts"),
+    *("session/law.ts", "tuner/costs.ts", "tuner/search.ts", "tuner/space.ts", "tuner/unrest.ts", "tuner/wolf_whale.ts"),
 }
 # A docstring says what a thing is or does; one that begins with such a word describes it from outside, as a question.
 QUESTIONS = re.compile(r"(What|Whether|How|Where|Which|Who|Whose|When|Why|The same)\b")
@@ -192,6 +190,7 @@ def test_what_is_not_installed_points_one_way(folder: str, forbidden: str) -> No
         ("_native.simulate_ideal", "greywhale/tune/judge/floor.py"),
         ("_native.simulate_windows", "greywhale/identify/windows.py"),
         ("_native.plant_row", "greywhale/arm/plants.py"),
+        ("_native.calibration_rule(", "greywhale/board/calibrate/rules.py greywhale/board/pots.py"),
         ("PARAMETERS[", "greywhale/board/upload.py greywhale/board/refusal.py"),
         ("os.replace(", "greywhale/base/formats/draft.py"),
         ("os.fsync(", "greywhale/base/formats/draft.py"),

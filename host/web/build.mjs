@@ -45,7 +45,7 @@ async function buildSingle(folder) {
     .replace('<link rel="stylesheet" href="page.css">', () => `<style>${text(page, ".css")}</style>`)
     .replace('<script type="module" src="page.js"></script>\n', "")
     .replace("</body>", () => [
-      ...["bench.wasm", "bench.json", "tuner.wasm", "tuner.json", "mega.hex", "nano.hex"].map((name) =>
+      ...["bench.wasm", "bench.json", "tuner.wasm", "tuner.json", "calibration.wasm", "mega.hex", "nano.hex"].map((name) =>
         element(name, "text/plain", gzipSync(readFileSync(join(folder, name))).toString("base64"))),
       ...Object.entries({ bench, tuner }).map(([name, worker]) => element(`${name}-worker`, "text/plain", text(worker, ".js"))),
       element("page", "text/javascript", text(page, ".js")),

@@ -1,4 +1,4 @@
-"""Compiles what a page runs to WebAssembly: the bench (sim) and the tuner (host/native).
+"""Compiles what a page runs to WebAssembly: the bench (sim), the tuner (host/native) and the rules of a calibration.
 
 The same sources as for Python, by another compiler. No multiplication and addition may be fused, so that the arm moves
 by the same bits as elsewhere.
@@ -54,7 +54,8 @@ TUNER = Module(
     ("firmware/lib", "host/native"),
     ("-Os", "-msimd128"),
 )
-MODULES = (BENCH, TUNER)
+CALIBRATION = Module("calibration", ("host/native/calibrate", "sim/web/no_exceptions.cpp"), (), ("-Os",))
+MODULES = (BENCH, TUNER, CALIBRATION)
 
 
 def step() -> None:

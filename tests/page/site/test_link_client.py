@@ -179,7 +179,7 @@ def test_link_client_samples_law_files_bench_and_tuner_give_what_python_gives(
     parameters = tmp_path / "parameters.json"
     parameters.write_text(json.dumps(answers_to_parameter_files()))
     calibrated = tmp_path / "calibrations.json"
-    calibrated.write_text(json.dumps(calibrations(monkeypatch)))
+    calibrated.write_text(json.dumps(calibrations()))
     tuned = tmp_path / "tuning.json"
     tuned.write_text(json.dumps(tuning()))
     given = {"CALIBRATIONS": calibrated, "GOLDEN": golden, "LAW": law, "CONTROLLER_FILES": files, "TUNING": tuned}

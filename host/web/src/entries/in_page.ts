@@ -35,6 +35,8 @@ export type Parts = {
   readonly data: BenchData;
   readonly worker: Worker;
   readonly tuner: () => Promise<TunerParts>; // a new worker each time
+  /** The rules of a calibration. */
+  readonly calibration: () => Promise<ArrayBuffer>;
   /** The HEX file of a board, mega or nano. */
   readonly firmware: (board: string) => Promise<NamedText>;
   /** The folder of the documentation, where one lies beside the page. */
@@ -63,13 +65,13 @@ function choice(): HTMLElement {
   return box;
 }
 
-function showPort({ data, worker, firmware, docs }: Parts): void {
+function showPort({ data, worker, calibration, firmware, docs }: Parts): void {
   worker.terminate();
   const board = new SerialBoard((navigator as { serial?: Serial }).serial, firmware);
   const session = new Session(board);
   const shell = new Shell(session, [
     new ConnectView(session, board), new LiveView(session), new ArmView(session, { arm: async () => data.description }),
-    new ControllerView(session, null), new ParametersView(session), new CalibrateView(session),
+    new ControllerView(session, null), new ParametersView(session), new CalibrateView(session, calibration),
   ], ["Plug the board in by USB and connect it in the view Port."]);
   offerOthers(shell, docs);
 }

@@ -22,13 +22,17 @@ async function module<Data>(name: string): Promise<{ code: ArrayBuffer; data: Da
   return { code, data, worker };
 }
 
+async function calibration(): Promise<ArrayBuffer> {
+  return file("calibration.wasm").arrayBuffer();
+}
+
 async function firmware(board: string): Promise<NamedText> {
   const name = `${board}.hex`;
   return { name, text: await file(name).text() };
 }
 
 async function parts(): Promise<Parts> {
-  return { ...await module<BenchData>("bench"), tuner: () => module<TunerData>("tuner"), firmware, docs: null };
+  return { ...await module<BenchData>("bench"), tuner: () => module<TunerData>("tuner"), calibration, firmware, docs: null };
 }
 
 openPage(parts());

@@ -21,6 +21,10 @@ async function module<Data>(name: string): Promise<{ code: ArrayBuffer; data: Da
   return { code, data };
 }
 
+async function calibration(): Promise<ArrayBuffer> {
+  return (await fetched("calibration.wasm")).arrayBuffer();
+}
+
 async function firmware(board: string): Promise<NamedText> {
   const name = `${board}.hex`;
   return { name, text: await (await fetched(name)).text() };
@@ -30,7 +34,7 @@ async function parts(): Promise<Parts> {
   const bench = worker("worker.js"); // starts while its module is on the way
   return {
     worker: bench, ...await module<BenchData>("bench"),
-    tuner: async () => ({ worker: worker("tuner.js"), ...await module<TunerData>("tuner") }), firmware, docs: "docs/",
+    tuner: async () => ({ worker: worker("tuner.js"), ...await module<TunerData>("tuner") }), calibration, firmware, docs: "docs/",
   };
 }
 

@@ -6,7 +6,7 @@ import { LinkError } from "../../link/declared";
 import { ResetCause, State, TABLE } from "../../link/schema";
 import { COUNT, JOINTS, traceOf } from "../../session/samples";
 import type { Session } from "../../session/session";
-import { examineMotor, type Motor } from "./motors";
+import type { Motor, Rules } from "./rules";
 
 const LEASE_MS = 160; // soft start is 100 of it
 const WAY_STEPS = 82; // 0.08 rad, where a pulse sends its joint
@@ -42,7 +42,8 @@ export class Trial {
 
   /** `calibrated` is the set that runs, `before`, with the potentiometers calibrated. */
   constructor(
-    private readonly session: Session, private readonly before: readonly number[], private readonly calibrated: readonly number[], private readonly joint: number,
+    private readonly session: Session, private readonly rules: Rules, private readonly before: readonly number[],
+    private readonly calibrated: readonly number[], private readonly joint: number,
   ) {
     this.stopsAsked = session.stopsAsked;
   }
@@ -50,7 +51,7 @@ export class Trial {
   /** Examines the motor; the set from before runs again afterwards. */
   async run(): Promise<Motor> {
     try {
-      return await examineMotor((volts, way) => this.pulse(volts, way), this.before[TABLE.named("supply_mv").index]! / 1000, this.joint);
+      return await this.rules.motor((volts, way) => this.pulse(volts, way), this.before[TABLE.named("supply_mv").index]! / 1000, this.joint);
     } finally {
       await this.session.stop();
       await this.session.apply(this.before);

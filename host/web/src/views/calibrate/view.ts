@@ -9,16 +9,12 @@ import { button, el, setText, tableHead } from "../../parts/dom";
 import type { View } from "../view";
 import { JOINTS, traceOf } from "../../session/samples";
 import type { Session } from "../../session/session";
-import { remarks, type Motor } from "./motors";
 import { Trial } from "./pulses";
-import { apartIn, changesOf, countsOf, jointsInUse, potsOf, requireNoSlip, solve, type Calibration, type Pose } from "./solve";
-import { judgeSweep, type Sweep } from "./sweep";
-import { MOTORS_ASKED, POSES, POSES_ASKED, sweepAsked } from "./words";
+import { jointsInUse, potsOf, Rules, type Calibration, type Motor, type Pose, type Sweep } from "./rules";
+import { motorsAsked, POSES, POSES_ASKED, sweepAsked } from "./words";
 
 const POTS = Array.from({ length: 2 * JOINTS }, (_, pot) => pot);
 const HELD_TICKS = 500; // that a pose is looked at
-const MEAN_TICKS = 100;
-const STILL_COUNTS = 3; // of the means of a held pose
 const SECOND_RAD = 1;
 const [FIRST, SECOND, AGAIN, THIRD] = [0, 1, 2, 3] as const;
 
@@ -28,17 +24,20 @@ export class CalibrateView implements View {
   private readonly sweeps: (Sweep | null)[] = POTS.map(() => null);
   private turning: { readonly pot: number; readonly from: number } | null = null; // since that sample
   private poses: (Pose | null)[] = POSES.map(() => null);
+  private rules: Rules | null = null;
   private readonly motors = new Map<number, Motor>(); // that have turned since something was stored
+  private readonly ready = el("p");
   private readonly turned = el("p", { attrs: { role: "status" } });
-  private readonly next = button("Begin the sweeps", () => this.act(() => this.goOn()), { class: "primary" });
+  private readonly next = button("Begin the sweeps", () => this.act((rules) => this.goOn(rules)), { class: "primary" });
   private readonly asked = el("p", { attrs: { role: "status" } }, "The motors stay off. Turn one joint of one arm after the other.");
   private readonly said = el("p", { attrs: { role: "status" } });
   private readonly rows = POTS.map((pot) => ({
     cells: ["", "", ""].map((text) => el("td", {}, text)),
-    sweep: button("Begin", () => this.act(() => this.begin(pot)), { title: `Sweep the joint of the ${potName(pot)}` }),
+    sweep: button("Begin", () => this.act((rules) => this.begin(rules, pot)), { title: `Sweep the joint of the ${potName(pot)}` }),
   }));
 
-  constructor(private readonly session: Session) {
+  /** `code` brings the rules of a calibration, once they are asked for. */
+  constructor(private readonly session: Session, private readonly code: () => Promise<ArrayBuffer>) {
     const head = tableHead("potentiometer", "reads", "least", "most", "sweep");
     const rows = this.rows.map(({ cells, sweep }, pot) => el("tr", {},
       el("th", { attrs: { scope: "row" } }, upperFirst(potName(pot)).replace(" potentiometer", "")), ...cells, el("td", {}, sweep)));
@@ -49,10 +48,10 @@ export class CalibrateView implements View {
         el("p", { class: "quiet" }, "Counts of 1023. Each sweep shows whether the right potentiometer turns, and it alone.")),
       el("section", { class: "card connect" },
         ...POSES.flatMap((_, place) => this.pose(place)),
-        el("h2", {}, "6 Motors"), el("p", {}, MOTORS_ASKED),
-        el("div", { class: "row" }, ...[0, 1, 2, 3].map((joint) => button(`Try motor ${joint}`, () => this.act(() => this.tryMotor(joint))))), this.turned,
+        el("h2", {}, "6 Motors"), this.ready,
+        el("div", { class: "row" }, ...[0, 1, 2, 3].map((joint) => button(`Try motor ${joint}`, () => this.act((rules) => this.tryMotor(rules, joint))))), this.turned,
         el("h2", {}, "7 Store"),
-        el("div", { class: "row" }, button("Store", () => this.act(() => this.store()), { class: "primary", title: "Run and store what was found" })),
+        el("div", { class: "row" }, button("Store", () => this.act((rules) => this.store(rules)), { class: "primary", title: "Run and store what was found" })),
         this.said,
         el("p", { class: "quiet" }, "Motors that were not tried keep their directions. greywhale calibrate also compares the arms without a protractor.")));
   }
@@ -61,16 +60,29 @@ export class CalibrateView implements View {
     const title = POSES[place]!;
     const inputs = place > SECOND ? [] : Array.from({ length: JOINTS }, (_, joint) =>
       el("input", { type: "number", value: String(place * SECOND_RAD), attrs: { step: "any", "aria-label": `${title}, joint ${joint}, rad` } }));
-    const take = button(`Take the ${title.toLowerCase()}`, () => this.act(async () => {
+    const take = button(`Take the ${title.toLowerCase()}`, () => this.act(async (rules) => {
       const raw = await this.running();
       const angles = place === AGAIN ? this.poses[FIRST]?.angles ?? [] : inputs.map(({ value }) => Number(value));
-      this.take(place, { angles, counts: this.still(raw) }, jointsInUse(raw));
+      this.take(rules, place, { angles, counts: this.still(rules, raw) }, jointsInUse(raw));
     }));
     return [el("h2", {}, `${place + 2} ${title}`), el("p", {}, POSES_ASKED[place]!), el("div", { class: "row" }, ...inputs, take)];
   }
 
-  private act(act: () => Promise<void>): void {
-    void this.session.attempt(act);
+  private act(act: (rules: Rules) => Promise<void>): void {
+    void this.session.attempt(async () => act(await this.load()));
+  }
+
+  private async load(): Promise<Rules> {
+    if (!this.rules) {
+      const rules = await Rules.load(await this.code());
+      setText(this.ready, motorsAsked(rules));
+      this.rules = rules;
+    }
+    return this.rules;
+  }
+
+  enter(): void {
+    this.act(async () => undefined);
   }
 
   /** The set that runs, by which the counts are known; the motors must be off. */
@@ -80,22 +92,22 @@ export class CalibrateView implements View {
   }
 
   /** Ends the sweep that is under way, and begins the next. */
-  private async goOn(): Promise<void> {
+  private async goOn(rules: Rules): Promise<void> {
     const raw = await this.running();
-    const mistake = this.turning ? this.judge(this.turning, raw) : "";
+    const mistake = this.turning ? this.judge(rules, this.turning, raw) : "";
     const pot = potsOf(jointsInUse(raw)).find((one) => !this.sweeps[one]);
-    if (!mistake && pot !== undefined) return this.begin(pot);
+    if (!mistake && pot !== undefined) return this.begin(rules, pot);
     this.turning = null;
     this.next.hidden = !mistake;
     this.ask(mistake ? `${mistake} Mend it, then comes this sweep again.` : "All potentiometers turn with their joints.", mistake !== "");
   }
 
-  private async begin(pot: number): Promise<void> {
+  private async begin(rules: Rules, pot: number): Promise<void> {
     if (!potsOf(jointsInUse(await this.running())).includes(pot)) throw new LinkError(`Joint ${pot % JOINTS} is not in use: a scale of it is 0.`);
     this.turning = { pot, from: this.session.samples.end };
     this.sweeps[pot] = null;
     this.next.hidden = false;
-    this.ask(sweepAsked(pot));
+    this.ask(sweepAsked(rules, pot));
   }
 
   private ask(what: string, mistake = false): void {
@@ -105,9 +117,9 @@ export class CalibrateView implements View {
   }
 
   /** Keeps a sweep, or says what is wrong with it. */
-  private judge({ pot, from }: { readonly pot: number; readonly from: number }, raw: readonly number[]): string {
+  private judge(rules: Rules, { pot, from }: { readonly pot: number; readonly from: number }, raw: readonly number[]): string {
     this.requireOff(from);
-    const { mistake, ...sweep } = judgeSweep(this.counts(from, raw), pot);
+    const { mistake, ...sweep } = rules.sweep(rules.counts(this.angles(from), raw), pot);
     if (!mistake) this.sweeps[pot] = sweep;
     return mistake;
   }
@@ -121,79 +133,70 @@ export class CalibrateView implements View {
     }
   }
 
-  /** Counts of the samples from a number on, a column a potentiometer. */
-  private counts(from: number, raw: readonly number[]): Float64Array[] {
+  /** The angles in the samples from a number on, rows of eight. */
+  private angles(from: number): number[] {
     const { samples } = this.session;
     const begin = Math.max(from, samples.first);
     if (begin >= samples.end) throw new LinkError("No sample has come yet; is the board silent?");
-    return POTS.map((pot) => Float64Array.from({ length: samples.end - begin }, (_, row) =>
-      countsOf(samples.count(begin + row, traceOf(pot < JOINTS ? "leader" : "follower", pot % JOINTS)), pot, raw)));
+    return Array.from({ length: samples.end - begin }, (_, row) =>
+      POTS.map((pot) => samples.count(begin + row, traceOf(pot < JOINTS ? "leader" : "follower", pot % JOINTS)))).flat();
   }
 
   /** The counts of arms that were held still. */
-  private still(raw: readonly number[]): number[] {
+  private still(rules: Rules, raw: readonly number[]): readonly number[] {
     const { samples } = this.session;
     if (samples.end - samples.first < HELD_TICKS) throw new LinkError("There are too few samples yet; hold the pose for half a second.");
     this.requireOff(samples.end - HELD_TICKS);
-    const mean = (values: Float64Array): number => values.reduce((sum, one) => sum + one, 0) / values.length;
-    const columns = this.counts(samples.end - HELD_TICKS, raw);
-    const wandered = columns.map((column) => {
-      const means = Array.from({ length: HELD_TICKS / MEAN_TICKS }, (_, part) => mean(column.subarray(part * MEAN_TICKS, (part + 1) * MEAN_TICKS)));
-      return Math.max(...means) - Math.min(...means);
-    });
-    const most = Math.max(...wandered);
-    if (most > STILL_COUNTS) {
-      throw new LinkError(`${upperFirst(potName(wandered.indexOf(most)))} moved by ${fixed(most, 0)} counts; hold both arms still.`);
-    }
-    return columns.map(mean);
+    return rules.held(rules.counts(this.angles(samples.end - HELD_TICKS), raw));
   }
 
   /** Keeps a pose unless it contradicts what was before; those after it are to be taken again. */
-  private take(place: number, pose: Pose, joints: readonly number[]): void {
+  private take(rules: Rules, place: number, pose: Pose, joints: readonly number[]): void {
     const poses = this.poses.map((kept, one) => (one < place ? kept : one === place ? pose : null));
     const [first, , again] = poses;
-    if (first && again) requireNoSlip(first, again);
-    const apart = this.solved(poses, joints)?.apart;
+    if (first && again) rules.requireNoSlip(first, again);
+    const apart = this.solved(rules, poses, joints)?.apart;
     this.poses = poses;
     setText(this.said, `${POSES[place]} is taken.${apart ? ` The arms are ${fixed(1000 * Math.max(...apart), 0)} mrad apart in the third pose.` : ""}`);
   }
 
   /** The result of sweeps and poses, as soon as there are enough of them. */
-  private solved(poses: readonly (Pose | null)[], joints: readonly number[]): { found: Calibration; apart: number[] | null } | null {
+  private solved(rules: Rules, poses: readonly (Pose | null)[], joints: readonly number[]): { found: Calibration; apart: readonly number[] | null } | null {
     const { [FIRST]: first, [SECOND]: second, [THIRD]: third } = poses;
     if (!first || !second || potsOf(joints).some((pot) => !this.sweeps[pot])) return null;
-    const found = solve(this.sweeps, first, second, joints);
-    return { found, apart: third ? apartIn(found, third, joints) : null };
+    const found = rules.solve(this.sweeps, first, second, joints);
+    return { found, apart: third ? rules.apartIn(found, third, joints) : null };
   }
 
   /** The set that runs, and the same with potentiometers and limits as found. */
-  private async calibrated(): Promise<{ readonly before: readonly number[]; readonly after: number[] }> {
+  private async calibrated(rules: Rules): Promise<{ readonly before: readonly number[]; readonly after: number[] }> {
     const before = await this.running();
-    const solved = this.solved(this.poses, jointsInUse(before));
+    const joints = jointsInUse(before);
+    const solved = this.solved(rules, this.poses, joints);
     if (!solved || this.poses.includes(null)) throw new LinkError("Take all sweeps and the four poses first.");
-    const changes = changesOf(solved.found);
+    const changes = rules.changesOf(solved.found, joints);
     return { before, after: TABLE.parameters.map(({ name, index }) => changes.get(name) ?? before[index]!) };
   }
 
-  private async tryMotor(joint: number): Promise<void> {
-    const { before, after } = await this.calibrated();
+  private async tryMotor(rules: Rules, joint: number): Promise<void> {
+    const { before, after } = await this.calibrated(rules);
     if (!jointsInUse(before).includes(joint)) throw new LinkError(`Joint ${joint} is not in use: a scale of it is 0.`);
     const buttons = [...this.element.querySelectorAll("button")];
     for (const one of buttons) one.disabled = true;
     this.motors.delete(joint);
     setText(this.turned, `Motor ${joint} gets pulses.`);
     try {
-      this.motors.set(joint, await new Trial(this.session, before, after, joint).run());
+      this.motors.set(joint, await new Trial(this.session, rules, before, after, joint).run());
     } finally {
       for (const one of buttons) one.disabled = false;
       const sentences = [...this.motors.values()].map(({ joint: one, volts, sign }) =>
         `Motor ${one}: ${fixed(volts, 1)} V moved it${sign < 0 ? ", the other way round; Store puts that right" : ""}.`);
-      setText(this.turned, [...sentences, ...remarks([...this.motors.values()], before[TABLE.named("supply_mv").index]! / 1000)].join(" "));
+      setText(this.turned, [...sentences, rules.remarks([...this.motors.values()], before[TABLE.named("supply_mv").index]! / 1000)].join(" "));
     }
   }
 
-  private async store(): Promise<void> {
-    const { after } = await this.calibrated();
+  private async store(rules: Rules): Promise<void> {
+    const { after } = await this.calibrated(rules);
     for (const { joint, sign } of this.motors.values()) after[TABLE.named(`joint${joint}.motor_sign`).index]! *= sign;
     await this.session.apply(after);
     await this.session.store();
@@ -212,8 +215,8 @@ export class CalibrateView implements View {
   }
 
   frame(): void {
-    const { samples, parameters } = this.session;
-    if (!parameters || !samples.end) return;
-    this.counts(samples.end - 1, parameters).forEach(([count], pot) => setText(this.rows[pot]!.cells[0]!, count!.toFixed(1)));
+    const { rules, session: { samples, parameters } } = this;
+    if (!rules || !parameters || !samples.end) return;
+    rules.counts(this.angles(samples.end - 1), parameters).forEach((count, pot) => setText(this.rows[pot]!.cells[0]!, count.toFixed(1)));
   }
 }

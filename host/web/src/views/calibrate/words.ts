@@ -1,14 +1,8 @@
-// Instructions to a person: joints by name, and which way of each is positive: greywhale/board/calibrate/words.py.
+// Instructions to a person, as the page gives them.
 
 import { potName } from "../../link/refusal";
-import { JOINT_NAMES } from "../../session/samples";
-
-const POSITIVE_WAYS = [
-  "counter-clockwise, seen from above",
-  "up: the hand rises",
-  "up: the hand rises, while the upper arm is level",
-  "clockwise, seen from the elbow along the hand",
-];
+import { JOINT_NAMES, JOINTS } from "../../session/samples";
+import type { Rules } from "./rules";
 
 export const POSES = ["First pose", "Second pose", "First pose again", "Third pose"] as const;
 export const POSES_ASKED = [
@@ -18,11 +12,11 @@ export const POSES_ASKED = [
   "Hold both arms in one and the same other pose: it shows how far they are apart.",
 ] as const;
 
-export function sweepAsked(pot: number): string {
-  const joint = `${potName(pot).replace(" potentiometer ", " joint ")}, ${JOINT_NAMES[pot % 4]!}`;
-  return `Now ${joint}: turn it, and no other, slowly to its positive end (${POSITIVE_WAYS[pot % 4]!}), then to its negative end, `
-    + "and let it rest.";
+export function sweepAsked(rules: Rules, pot: number): string {
+  const joint = `${potName(pot).replace(" potentiometer ", " joint ")}, ${JOINT_NAMES[pot % JOINTS]!}`;
+  return `Now ${joint}: ${rules.turnAsked(pot % JOINTS)}`;
 }
 
-export const MOTORS_ASKED = "Each motor gets short weak pulses, of a tenth to a third of the supply that the board counts on (supply_mv). "
-  + "Let the follower hang or lie so that every joint can move by 20 degrees to both sides, switch the motors' supply on, and keep a hand on its switch.";
+export function motorsAsked(rules: Rules): string {
+  return `Each motor gets short weak pulses, of a tenth to a third of the supply that the board counts on (supply_mv). ${rules.readyAsked()}`;
+}
