@@ -34,6 +34,7 @@ constexpr struct {
     {"apart", calibrate::apart},
     {"raw", calibrate::raw},
     {"motor", calibrate::motor},
+    {"pulse", calibrate::pulse},
     {"remarks", calibrate::remarks},
     {"positive_way", calibrate::positive_way},
     {"turn_asked", calibrate::turn_asked},

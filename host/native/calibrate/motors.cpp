@@ -13,6 +13,16 @@ constexpr double kWeakShare = 0.5;  // of the others' way a volt: healthy joints
 constexpr double kMuchSupplyShare = 0.2;  // if every motor needs so much of the supply, the supply is low
 constexpr double kOtherJointRatio = 2.0;  // another joint that moves so many times farther has this motor
 
+// The limits of a pulse.
+constexpr double kLeaseMs = 160.0;  // motors off by the firmware, whatever the host does; soft start is 100 of it
+constexpr double kSettleMs = 250.0;
+constexpr double kStillMs = 200.0, kStill = 0.008;  // rad: an arm that still falls would hide a weak pulse
+constexpr double kPatienceMs = 5000.0;
+constexpr double kStep = 0.08;         // rad
+constexpr double kFarthest = 0.16;     // rad, of a joint from where it should be: twice a pulse's step
+constexpr double kStiffKp = 64.0;      // so that a small error already gets the whole voltage of the pulse
+constexpr double kWidestLimit = 6.28;  // rad, the widest that a board takes
+
 // Half of what lies between a pulse and one the other way, of each joint.
 std::vector<double> between(const double* one, const double* other) {
   std::vector<double> half(kJoints);
@@ -73,6 +83,21 @@ Answer motor(Given given) {
           text("the motor of joint %d did not move it with %.1f V: check that the motors' supply is on, the driver's "
                "enable, PWM and direction wires, the motor's own wires, and that the joint moves freely.",
                static_cast<int>(joint), volts)};
+}
+
+Answer pulse(Given given) {
+  const double joint = given.next(), volts = given.next();
+  std::string set = text(
+      "period_ms 1\nsoft_start_ms 100\ntracking_limit %g\ntracking_ms 1\nstall_volts 0\nunrest_amplitude 0", kFarthest);
+  for (int other = 0; other < static_cast<int>(kJoints); ++other) {
+    const double ku_mv = other == joint ? std::nearbyint(1000.0 * volts) : 0.0;
+    const auto add = [&set, other](const char* name, double value) {
+      add_line(set, text("joint%d.%s %g", other, name, value));
+    };
+    add("kp", kStiffKp), add("kd", 0.0), add("ki", 0.0), add("ku_mv", ku_mv);
+    add("limit_min", -kWidestLimit), add("limit_max", kWidestLimit);
+  }
+  return {{kLeaseMs, kSettleMs, kStillMs, kPatienceMs, kStep, kStill}, set};
 }
 
 Answer remarks(Given given) {

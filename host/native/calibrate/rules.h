@@ -76,6 +76,11 @@ Answer raw(Given given);
 // -1, of the next pulse; at the end the motor's sign, the voltage that moved it, and the way (rad).
 Answer motor(Given given);
 
+// A joint, and the voltage of its pulse -> ms until the firmware turns the motors off, ms to be watched afterwards, ms
+// that the follower must have rested before, ms to wait for that; the step in which the joint is led, and what counts
+// as rest, rad. Words are the set with which the pulse runs: a line a parameter, its name and its physical value.
+Answer pulse(Given given);
+
 // The supply in V, and rows of joint, voltage and way of motors that have moved: words about motors that needed much.
 Answer remarks(Given given);
 

@@ -3,7 +3,6 @@ import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
-import { pulseSet } from "../src/views/calibrate/pulses";
 import { Rules, type Pose, type Sweep } from "../src/views/calibrate/rules";
 import { TABLE } from "../src/link/schema";
 
@@ -54,7 +53,7 @@ test("a motor is pulsed until it moves its joint, or another one", async () => {
   assert.ok(Math.abs(way - 0.051) < 1e-12);
   assert.deepEqual(pulses.map(([volts, sent]) => volts * sent), [weak, -weak, enough, -enough, -enough, enough]);
   await assert.rejects(rules.motor(moves(2, 0), 15, 1), /^Error: The motor of joint 1 moved joint 2: their motors/);
-  assert.deepEqual(pulseSet(DEFAULTS, 2, 2.5), given.pulse_set);
+  assert.deepEqual(rules.pulse(DEFAULTS, 2, 2.5).set, given.pulse_set);
 });
 
 test("counts are those of the converter, whatever set the angle came from", () => {

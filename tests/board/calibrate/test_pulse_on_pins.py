@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 import pytest
 
-from greywhale.board.calibrate.motors import LEASE_MS, PULSE_WAY_RAD, pulse_table
+from greywhale.board.calibrate.motors import LEASE_MS, PULSE_STEP_RAD, pulse_table
 from greywhale.board.calibrate.rules import PULSE_SHARES
 from greywhale.protocol import schema
 from greywhale.protocol.firmware import STEP_LSB
@@ -54,7 +54,7 @@ def test_the_strongest_pulse_keeps_its_limits_on_the_pins(joint: int, sign: floa
         host.bench.trace = seen.look
         begun = host.ask(schema.LeadRequest(LEASE_MS))
         step = [0, 0, 0, 0]
-        step[joint] = way * round(PULSE_WAY_RAD / STEP_LSB)
+        step[joint] = way * round(PULSE_STEP_RAD / STEP_LSB)
         host.send(schema.LeadPointRequest(begun.next, (step[0], step[1], step[2], step[3])))
         host.run(1.0)
         host.bench.trace = None

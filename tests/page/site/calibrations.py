@@ -19,7 +19,7 @@ ALL = [1.0] * 4  # joints in use
 def calibrations() -> dict[str, Any]:
     """Questions with their answers, and the set with which a motor gets its pulses."""
     told = []
-    for rule, *given in (*sweeps(), *poses(), *motors(), ("turn_asked", 2), ("ready_asked",)):
+    for rule, *given in (*sweeps(), *poses(), *motors(), ("pulse", 2, 2.5), ("turn_asked", 2), ("ready_asked",)):
         numbers, words = ask(rule, *given)
         flat = [float(number) for one in given for number in np.ravel(np.asarray(one))]
         told.append({"rule": rule, "given": flat, "numbers": numbers.tolist(), "words": words})

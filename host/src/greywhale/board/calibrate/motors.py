@@ -2,7 +2,7 @@
 
 The firmware itself limits a pulse. A set of parameters that is never stored gives this joint's controller so many volts
 at most (`ku_mv`, with neither integral part nor damping) and the others none; the lease ends it after LEASE_MS; and
-`tracking_limit` makes it a fault when the joint is farther than FARTHEST_RAD from where it is told to be.
+`tracking_limit` makes it a fault when the joint is farther than two steps of a pulse from where it is told to be.
 """
 
 from __future__ import annotations
@@ -23,12 +23,9 @@ from greywhale.protocol import schema
 from greywhale.protocol.firmware import ANGLE_LSB, JOINTS, STEP_LSB
 from greywhale.protocol.table import ParameterTable
 
-LEASE_MS = 160  # motors off by the firmware, whatever this host does; soft start is 100 of it
-PULSE_WAY_RAD = 0.08  # where a pulse sends its joint
-FARTHEST_RAD = 0.16  # of a joint from where it should be: twice a pulse's way
-STILL_TICKS, STILL_RAD, PATIENCE_TICKS = 200, 0.008, 5000  # an arm that still falls would hide a weak pulse
-SETTLE_TICKS = 250  # watched after the lease, while the joint settles
-_STIFF_KP = 64.0  # so that a small error already gets the whole voltage of the pulse
+_LIMITS = ask("pulse", 0, 0.0)[0].tolist()
+LEASE_MS, SETTLE_TICKS, STILL_TICKS, PATIENCE_TICKS = (int(limit) for limit in _LIMITS[:4])
+PULSE_STEP_RAD, STILL_RAD = _LIMITS[4:]
 
 
 @dataclass(frozen=True)
@@ -80,26 +77,8 @@ def remarks(motors: Sequence[Motor], supply_v: float) -> tuple[str, ...]:
 
 def pulse_table(table: ParameterTable, joint: int, volts: float) -> ParameterTable:
     """The set with which a pulse runs; it is for this joint only, and never stored."""
-    parameters = schema.PARAMETER_BY_NAME
-    widest = parameters["joint0.limit_max"].maximum
-    changes = {
-        "period_ms": 1,
-        "soft_start_ms": 100,
-        "tracking_limit": parameters["tracking_limit"].to_raw(FARTHEST_RAD),
-        "tracking_ms": 1,
-        "stall_volts": 0,
-        "unrest_amplitude": 0,
-    }
-    for other in range(JOINTS):
-        changes |= {
-            f"joint{other}.kp": parameters[f"joint{other}.kp"].to_raw(_STIFF_KP),
-            f"joint{other}.kd": 0,
-            f"joint{other}.ki": 0,
-            f"joint{other}.ku_mv": round(1000.0 * volts) if other == joint else 0,
-            f"joint{other}.limit_min": -widest,
-            f"joint{other}.limit_max": widest,
-        }
-    return table.with_raw(changes)
+    lines = (line.split() for line in words("pulse", joint, volts).splitlines())
+    return table.with_raw({name: schema.PARAMETER_BY_NAME[name].to_raw(float(value)) for name, value in lines})
 
 
 def pulse(device: Device, weak: ParameterTable, joint: int, way: int) -> Floats:
@@ -107,7 +86,7 @@ def pulse(device: Device, weak: ParameterTable, joint: int, way: int) -> Floats:
     run_set(device, weak)
     _wait_until_still(device)
     step = [0, 0, 0, 0]
-    step[joint] = way * round(PULSE_WAY_RAD / STEP_LSB)
+    step[joint] = way * round(PULSE_STEP_RAD / STEP_LSB)
     device.telemetry(1)
     samples: list[schema.Sample] = []
     try:

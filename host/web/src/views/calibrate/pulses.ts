@@ -8,33 +8,8 @@ import { COUNT, JOINTS, traceOf } from "../../session/samples";
 import type { Session } from "../../session/session";
 import type { Motor, Rules } from "./rules";
 
-const LEASE_MS = 160; // soft start is 100 of it
-const WAY_STEPS = 82; // 0.08 rad, where a pulse sends its joint
-const FARTHEST_RAD = 0.16; // of a joint from where it should be: twice a pulse's way
-const STILL_TICKS = 200;
-const STILL_RAD = 0.008; // an arm that still falls would hide a weak pulse
-const PATIENCE_MS = 5000;
-const SETTLE_TICKS = 250; // watched after the lease, while the joint settles
-const STIFF_KP = 64; // so that a small error already gets the whole voltage of the pulse
 const LOOK_MS = 20;
 const ALL = Array.from({ length: JOINTS }, (_, joint) => joint);
-
-/** The set with which a pulse of so many volts runs, made from that of a calibrated board. */
-export function pulseSet(calibrated: readonly number[], joint: number, volts: number): number[] {
-  const raw = [...calibrated];
-  const set = (name: string, value: number): void => {
-    const { index, lsb } = TABLE.named(name);
-    raw[index] = Math.floor(value / lsb + 0.5);
-  };
-  const common = { period_ms: 1, soft_start_ms: 100, tracking_limit: FARTHEST_RAD, tracking_ms: 1, stall_volts: 0, unrest_amplitude: 0 };
-  for (const [name, value] of Object.entries(common)) set(name, value);
-  const { maximum, lsb } = TABLE.named("joint0.limit_max");
-  for (const other of ALL) {
-    const own = { kp: STIFF_KP, kd: 0, ki: 0, ku_mv: other === joint ? 1000 * volts : 0, limit_min: -maximum * lsb, limit_max: maximum * lsb };
-    for (const [name, value] of Object.entries(own)) set(`joint${other}.${name}`, value);
-  }
-  return raw;
-}
 
 /** One motor's pulses. A stop that a person asks for, or a page that nobody sees, ends them. */
 export class Trial {
@@ -60,16 +35,16 @@ export class Trial {
 
   private async pulse(volts: number, way: number): Promise<readonly number[]> {
     const { session, session: { samples }, joint } = this;
-    const set = pulseSet(this.calibrated, joint, volts);
+    const { set, leaseMs, settleMs, stillMs, patienceMs, step, still } = this.rules.pulse(this.calibrated, joint, volts);
     await session.apply(set);
     const from = samples.end;
-    await this.until(() => this.isStill(from), "The follower does not come to rest; lay it down, and begin anew.");
+    await this.until(patienceMs, () => this.isStill(from, stillMs, still), "The follower does not come to rest; lay it down, and begin anew.");
     const [begin, tick] = [samples.end, samples.lastTick];
     const restarted = (): boolean => samples.lastTick < tick;
     let reference: readonly number[] = [];
     try {
-      ({ reference } = await session.lead(LEASE_MS, ALL.map((other) => (other === joint ? way * WAY_STEPS : 0))));
-      await this.until(() => restarted() || samples.lastTick - tick >= LEASE_MS + SETTLE_TICKS, "The board sends no samples; check its cable, and begin anew.");
+      ({ reference } = await session.lead(leaseMs, ALL.map((other) => (other === joint ? way * step : 0))));
+      await this.until(patienceMs, () => restarted() || samples.lastTick - tick >= leaseMs + settleMs, "The board sends no samples; check its cable, and begin anew.");
     } catch (error) {
       if (!restarted()) throw error;
     }
@@ -89,12 +64,12 @@ export class Trial {
       + "its supply sinks when a motor draws. Give the motors a supply of their own, with a common ground, and 1000 uF or more at the drivers, and begin anew.");
   }
 
-  private async until(reached: () => boolean, sentence: string): Promise<void> {
+  private async until(patienceMs: number, reached: () => boolean, sentence: string): Promise<void> {
     for (let waited = 0; !reached(); waited += LOOK_MS) {
       if (this.session.stopsAsked !== this.stopsAsked || document.visibilityState === "hidden") {
         throw new LinkError(`The motor of joint ${this.joint} was not tried to the end: Stop was pressed, or the page was hidden.`);
       }
-      if (waited > PATIENCE_MS) throw new LinkError(sentence);
+      if (waited > patienceMs) throw new LinkError(sentence);
       await new Promise((settle) => setTimeout(settle, LOOK_MS));
     }
   }
@@ -105,11 +80,11 @@ export class Trial {
   }
 
   /** True if the follower has rested for a while since a sample; it may have been falling since the last pulse. */
-  private isStill(from: number): boolean {
-    const begin = this.session.samples.end - STILL_TICKS;
+  private isStill(from: number, ticks: number, least: number): boolean {
+    const begin = this.session.samples.end - ticks;
     return begin >= from && ALL.every((joint) => {
       const angles = this.angles(begin, joint);
-      return (Math.max(...angles) - Math.min(...angles)) * COUNT.follower <= STILL_RAD;
+      return (Math.max(...angles) - Math.min(...angles)) * COUNT.follower <= least;
     });
   }
 }

@@ -9,6 +9,7 @@ import { JOINTS } from "../../session/samples";
 
 const POTS = 2 * JOINTS;
 const COUNT14_PER_COUNT = 16; // in a count of the converter
+const STEPS_PER_RAD = 1024; // of a led point on the link
 
 /** A potentiometer in a sweep: 1 where its reading grows towards the positive end, and its ends in counts. */
 export type Sweep = { readonly direction: number; readonly low: number; readonly high: number };
@@ -18,6 +19,11 @@ export type Pose = { readonly angles: readonly number[]; readonly counts: readon
 export type Calibration = { readonly zero: readonly number[]; readonly scale: readonly number[]; readonly limits: readonly (readonly number[])[] };
 /** A motor that turned: `sign` 1 as its parameter says, -1 the other way; `way` (rad) is half of what lies between pulses both ways. */
 export type Motor = { readonly joint: number; readonly sign: number; readonly volts: number; readonly way: number };
+/** The set with which a pulse runs and its limits: times, the step in the board's units, and what counts as rest in rad. */
+export type PulseLimits = {
+  readonly set: number[]; readonly leaseMs: number; readonly settleMs: number; readonly stillMs: number; readonly patienceMs: number;
+  readonly step: number; readonly still: number;
+};
 /** Gives the motor one pulse, `way` 1 or -1; how far each joint went, in rad. */
 export type Pulse = (volts: number, way: number) => Promise<readonly number[]>;
 
@@ -128,6 +134,17 @@ export class Rules {
       if (way !== undefined) return { joint, sign: one!, volts: other!, way };
       moved.push(...await pulse(one!, other!));
     }
+  }
+
+  /** A pulse of so many volts, its set made from that of a calibrated board. */
+  pulse(calibrated: readonly number[], joint: number, volts: number): PulseLimits {
+    const { numbers: [leaseMs, settleMs, stillMs, patienceMs, step, still], words } = this.ask("pulse", joint, volts);
+    const set = [...calibrated];
+    for (const [name, value] of words.split("\n").map((line) => line.split(" "))) {
+      const { index, lsb } = TABLE.named(name!);
+      set[index] = Math.floor(Number(value) / lsb + 0.5);
+    }
+    return { set, leaseMs: leaseMs!, settleMs: settleMs!, stillMs: stillMs!, patienceMs: patienceMs!, step: Math.round(step! * STEPS_PER_RAD), still: still! };
   }
 
   /** Sentences about motors that moved their joints, but with more voltage than one expects. */
