@@ -4,9 +4,9 @@
 #include <nanobind/ndarray.h>
 
 #include <cstddef>
-#include <memory>
 #include <stdexcept>
 
+#include "arrays.h"
 #include "bindings.h"
 #include "closed_loop/band_power.h"
 #include "closed_loop/experiment.h"
@@ -18,12 +18,11 @@ namespace loop = greywhale::loop;
 
 namespace {
 
+using greywhale::bind::Array;
+using greywhale::bind::In;
 using loop::kJoints;
 
 constexpr std::size_t kNumbers = 6;  // of a section: b0, b1, b2, a0 = 1, a1, a2
-
-template <class T, class... Shape>
-using In = nb::ndarray<const T, Shape..., nb::c_contig, nb::device::cpu>;
 
 loop::Section<kJoints> section(const double* n) { return {n[0], n[1], n[2], n[4], n[5]}; }
 
@@ -34,19 +33,16 @@ nb::object band_power(const In<T, nb::shape<-1, -1, kJoints>>& angles, std::size
   if (stride == 0 || length == 0) throw std::invalid_argument("stride and length must be 1 or more.");
   const std::size_t count = angles.shape(0), rows = angles.shape(1);
   const std::size_t blocks = (rows + stride - 1) / stride / length;
-  auto power = std::make_unique<double[]>(count * blocks * kJoints);
+  Array<double> power({count, blocks, kJoints});
   {
     const nb::gil_scoped_release free;
     const loop::Section<kJoints> low = section(sections.data()), high = section(sections.data() + kNumbers);
     greywhale::share_out(count, 0, [&](std::size_t n) {
       loop::band_power(angles.data() + n * rows * kJoints, stride, blocks, length, low, high,
-                       power.get() + n * blocks * kJoints);
+                       power.data() + n * blocks * kJoints);
     });
   }
-  double* raw = power.release();
-  const nb::capsule owner(raw, [](void* p) noexcept { delete[] static_cast<double*>(p); });
-  const std::size_t shape[] = {count, blocks, kJoints};
-  return nb::cast(nb::ndarray<nb::numpy, double, nb::c_contig>(raw, 3, shape, owner));
+  return power.numpy();
 }
 
 }  // namespace

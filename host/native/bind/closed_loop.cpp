@@ -8,14 +8,13 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <memory>
 #include <stdexcept>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "arm/arm.h"
 #include "arm/sensor.h"
+#include "arrays.h"
 #include "bindings.h"
 #include "closed_loop/batch.h"
 #include "closed_loop/block.h"
@@ -32,38 +31,15 @@ namespace loop = greywhale::loop;
 
 namespace {
 
+using greywhale::bind::Array;
+using greywhale::bind::In;
 using loop::kJoints;
 
-template <class T, class... Shape>
-using In = nb::ndarray<const T, Shape..., nb::c_contig, nb::device::cpu>;
-template <class T>
-using Out = nb::ndarray<nb::numpy, T, nb::c_contig>;
 template <class T>
 using Each = std::array<T, kJoints>;
 
 using ControllerTable = In<std::int32_t, nb::shape<-1, kJoints, loop::kControllerColumns>>;
 using PlantTable = In<double, nb::shape<-1, loop::kPlantColumns>>;
-
-// A fresh array that numpy will own.
-template <class T>
-class Array {
- public:
-  explicit Array(std::vector<std::size_t> shape) : shape_(std::move(shape)) {
-    std::size_t size = 1;
-    for (const std::size_t n : shape_) size *= n;
-    values_ = std::make_unique<T[]>(size);
-  }
-  T* data() { return values_.get(); }
-  nb::object numpy() {
-    T* raw = values_.release();
-    nb::capsule owner(raw, [](void* p) noexcept { delete[] static_cast<T*>(p); });
-    return nb::cast(Out<T>(raw, shape_.size(), shape_.data(), owner));
-  }
-
- private:
-  std::vector<std::size_t> shape_;
-  std::unique_ptr<T[]> values_;
-};
 
 // The experiment with the arrays that it looks into.
 struct ClosedLoop {

@@ -5,10 +5,10 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <stdexcept>
 #include <vector>
 
+#include "arrays.h"
 #include "bindings.h"
 #include "closed_loop/experiment.h"
 #include "windows/windows.h"
@@ -22,9 +22,9 @@ namespace windows = greywhale::windows;
 namespace {
 
 using arm::kJoints;
+using greywhale::bind::Array;
+using greywhale::bind::In;
 
-template <class T, class... Shape>
-using In = nb::ndarray<const T, Shape..., nb::c_contig, nb::device::cpu>;
 using Rows = In<double, nb::shape<-1, kJoints>>;
 using Plants = In<double, nb::shape<-1, loop::kPlantColumns>>;
 
@@ -68,7 +68,7 @@ nb::object run(const Windows& w, const Drive& drive, const Plants& plants, const
   check(w, drive, plants, offsets, every);
   const std::size_t candidates = plants.shape(0), count = w.first.shape(0), kept = (w.rows + every - 1) / every;
   const std::size_t size = kept * kJoints;
-  auto values = std::make_unique<double[]>(candidates * count * size);
+  Array<double> values({candidates, count, kept, kJoints});
   {
     const nb::gil_scoped_release free;
     const windows::Windows given{
@@ -78,14 +78,12 @@ nb::object run(const Windows& w, const Drive& drive, const Plants& plants, const
     tasks.reserve(candidates * count);
     for (std::size_t window = 0; window < count; ++window) {
       for (std::size_t n = 0; n < candidates; ++n) {
-        tasks.push_back({&plants(n, 0), &offsets(n, 0), window, &values[(n * count + window) * size]});
+        tasks.push_back({&plants(n, 0), &offsets(n, 0), window, values.data() + (n * count + window) * size});
       }
     }
     windows::simulate(given, tasks, threads);
   }
-  double* raw = values.release();
-  nb::capsule owner(raw, [](void* p) noexcept { delete[] static_cast<double*>(p); });
-  return nb::cast(nb::ndarray<nb::numpy, double, nb::c_contig>(raw, {candidates, count, kept, kJoints}, owner));
+  return values.numpy();
 }
 
 }  // namespace
