@@ -15,7 +15,11 @@ from greywhale.commission.limits import COMMISSIONING_LIMITS
 from greywhale.identify.limits import IDENTIFICATION_LIMITS
 from greywhale.measure.limits import SWING_LIMITS
 from greywhale.tune.limits import TUNING_LIMITS
-from tests.support.limits import attributes_read
+from tests.support.limits import attributes_read, members_read
+from tools import ROOT
+
+PACKAGE = Path(greywhale.__file__).parent
+NATIVE = ROOT / "host" / "native"
 
 ROOMS = {
     "adapt": ADAPTATION_LIMITS,
@@ -26,7 +30,8 @@ ROOMS = {
 }
 # What reads them beside the room that keeps them.
 READERS = {"measure": ("measure", "commission", "adapt", "tune")}
-PACKAGE = Path(greywhale.__file__).parent
+# The rooms whose limits compiled code reads too.
+COMPILED = {"measure": NATIVE / "score", "tune": NATIVE / "score"}
 
 
 @dataclass(frozen=True)
@@ -58,6 +63,7 @@ def test_what_differs_is_named() -> None:
 def test_a_room_reads_all_its_limits(room: str) -> None:
     names = {one.name.rpartition(".")[2] for one in limits_in(ROOMS[room])}
     read = [attributes_read(PACKAGE / one) for one in READERS.get(room, (room,))]
+    read += [members_read(COMPILED[room])] if room in COMPILED else []
     assert names - set().union(*read) == set()
 
 

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from scipy.signal import butter, sosfilt
 
+from greywhale import _native
 from greywhale.measure.swings import (
     BLOCK,
     FILTER_EVERY,
     RATTLE_BAND_HZ,
     SECTIONS,
-    band_power,
     chatter,
     chatter_of_record,
     duty_swings,
@@ -47,7 +47,8 @@ def test_the_native_filter_is_scipys(kind: type) -> None:
     rows = (angles.astype(np.float64) - angles[:, :1].astype(np.float64))[:, ::2]
     blocks = rows.shape[1] // BLOCK
     wanted = np.square(sosfilt(SECTIONS, rows, axis=1))[:, : blocks * BLOCK].reshape(3, blocks, BLOCK, 4).mean(axis=2)
-    np.testing.assert_allclose(band_power(angles, 2, BLOCK, SECTIONS), wanted, rtol=1e-9)
+    found = np.asarray(_native.band_power(angles, 2, BLOCK, SECTIONS))
+    np.testing.assert_allclose(found, wanted, rtol=1e-9)
 
 
 def test_a_follower_that_does_as_its_leader_does_not_rattle() -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import fields, is_dataclass, replace
@@ -35,6 +36,11 @@ def copy_of(limits: Any) -> Any:
     """Equal limits, none of whose groups is the same object."""
     groups = {one.name: getattr(limits, one.name) for one in fields(limits)}
     return replace(limits, **{name: copy_of(value) for name, value in groups.items() if is_dataclass(value)})
+
+
+def members_read(folder: Path) -> set[str]:
+    """The names of all members that compiled code reads; what is generated there only declares them."""
+    return {name for path in folder.glob("*.cpp") for name in re.findall(r"\.(\w+)", path.read_text(encoding="utf-8"))}
 
 
 @contextmanager

@@ -14,3 +14,4 @@ void bind_fuzzy(nanobind::module_& m);
 void bind_ideal(nanobind::module_& m);
 void bind_identify(nanobind::module_& m);
 void bind_rigid_body(nanobind::module_& m);
+void bind_score(nanobind::module_& m);

@@ -15,4 +15,5 @@ NB_MODULE(_native, m) {
   bind_ideal(m);
   bind_identify(m);
   bind_rigid_body(m);
+  bind_score(m);
 }

@@ -20,10 +20,10 @@ from greywhale.tune.search.objective import (
     ErrorScale,
     FollowingErrors,
     Objective,
-    combine_plants,
     follow,
     pair_with_plants,
     relative_costs,
+    total_costs,
 )
 from greywhale.tune.search.training import (
     fit_motion,
@@ -120,7 +120,9 @@ def test_the_bench_s_own_arithmetic_agrees(objective: Objective) -> None:
 
 def test_the_plants_mean_and_worst_count_half_each() -> None:
     values = np.array([[[1.0, 0.0, 2.0, 4.0], [3.0, 0.0, 2.0, 0.0]]])
-    np.testing.assert_allclose(combine_plants(values), [[0.5 * 2 + 0.5 * 3, 0.0, 2.0, 0.5 * 2 + 0.5 * 4]])
+    np.testing.assert_allclose(
+        total_costs(values[:, :, None], [1.0]), [[0.5 * 2 + 0.5 * 3, 0.0, 2.0, 0.5 * 2 + 0.5 * 4]]
+    )
 
 
 def test_every_controller_meets_every_plant() -> None:

@@ -16,6 +16,10 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field, fields, is_dataclass, replace
 from typing import Any, TypeVar
 
+import numpy as np
+
+from greywhale.base.types import Floats
+
 # Where a value is from, if no measurement, paper or firmware gave it.
 BY_JUDGEMENT = "by judgement"
 BY_DEFINITION = "by definition"
@@ -51,6 +55,16 @@ def limits_in(limits: Any) -> Iterator[Limit]:
             yield Limit(one.name, value, **one.metadata)
         elif _room_of(value) == _room_of(limits):
             yield from (replace(inner, name=f"{one.name}.{inner.name}") for inner in limits_in(value))
+
+
+def names_in(limits: Any) -> tuple[str, ...]:
+    """The names of the plain numbers of one group, in their order: compiled code has a struct of them."""
+    return tuple(one.name for one in fields(limits) if isinstance(getattr(limits, one.name), (int, float)))
+
+
+def numbers_in(limits: Any) -> Floats:
+    """The plain numbers of one group, in their order, as compiled code takes them."""
+    return np.array([getattr(limits, name) for name in names_in(limits)], dtype=np.float64)
 
 
 def _room_of(limits: Any) -> str:

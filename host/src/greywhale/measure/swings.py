@@ -127,6 +127,16 @@ SECTIONS = np.array(
 BLOCK = round(BLOCK_S / (FILTER_EVERY * TICK_S))
 
 
+# In the order of SwingMeasure in host/native/score/swing_measure.h.
+MEASURE: Floats = np.array(
+    [
+        *SECTIONS.ravel(),
+        *(FILTER_EVERY, BLOCK, round(REACT_S / BLOCK_S)),
+        *(CHATTER_SHARE, round(RIPPLE_S / TICK_S)),
+    ]
+)
+
+
 def rattle(angles: Singles, leader: Floats, every: int, wait_s: float) -> Floats:
     """The rattle (n, 4) in rad, rms over the motion, of simulated followers (n, rows, 4).
 
@@ -136,23 +146,19 @@ def rattle(angles: Singles, leader: Floats, every: int, wait_s: float) -> Floats
     """
     if FILTER_EVERY % every:
         raise ValueError(f"there is a row every {every} ticks, but {FILTER_EVERY} must be a multiple of that")
-    followed = band_power(angles, FILTER_EVERY // every, BLOCK, SECTIONS)
-    led = band_power(leader[None], FILTER_EVERY, BLOCK, SECTIONS)
-    back = round(REACT_S / BLOCK_S)
-    # The filter is centred; shifted, it looks back only.
-    allowed = scipy.ndimage.maximum_filter1d(led, back + 1, axis=1, origin=back // 2)
-    first = round(wait_s / BLOCK_S)
-    excess = np.maximum(followed - allowed, 0.0)[:, first:]
-    found: Floats = np.sqrt(excess.mean(axis=1))
+    found: Floats = _native.rattle(  # type: ignore[assignment] # the stub says object
+        angles=angles,
+        leader=leader,
+        stride=FILTER_EVERY // every,
+        first_block=first_block(wait_s),
+        measure=MEASURE,
+    )
     return found
 
 
-def band_power(angles: Singles | Floats, stride: int, length: int, sections: Floats) -> Floats:
-    """The mean square (n, blocks, 4) of angles (n, rows, 4) in the band that two second-order `sections` (2, 6) pass.
-
-    Every `stride`-th row counts, and `length` of those make a block; a block that is not full is left out.
-    """
-    return np.asarray(_native.band_power(angles, stride, length, sections), dtype=np.float64)
+def first_block(wait_s: float) -> int:
+    """The first block of rattle after a wait."""
+    return round(wait_s / BLOCK_S)
 
 
 def rattle_of_record(leader: Floats, follower: Floats) -> Floats:
@@ -177,9 +183,10 @@ def _rattle_band() -> Floats:
 
 def duty_swings(duties: Duties, rows: tuple[int, int], board: Board) -> Integers:
     """For every record and joint (n, 4): swings by more than CHATTER_SHARE of that joint's full PWM."""
-    steps = pwm_steps(board)
-    counted = {top: count_swings(duties, *rows, CHATTER_SHARE * top)[0] for top in set(steps)}
-    return np.stack([counted[top][:, joint] for joint, top in enumerate(steps)], axis=1)
+    found: Integers = _native.duty_swings(  # type: ignore[assignment] # the stub says object
+        duties=duties, first=rows[0], last=rows[1], pwm_top=pwm_steps(board), share=CHATTER_SHARE
+    )
+    return found
 
 
 def chatter(duties: Duties, every: int, board: Board) -> Floats:

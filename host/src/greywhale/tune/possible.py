@@ -17,7 +17,7 @@ from greywhale.protocol.firmware import TICK_S
 from greywhale.protocol.table import ParameterTable
 from greywhale.tune.judge.floor import follow_ideally
 from greywhale.tune.limits import TUNING_LIMITS, TuningLimits
-from greywhale.tune.search.objective import ErrorScale, error_of, follow
+from greywhale.tune.search.objective import ErrorScale, error_of, follow, room_of
 from greywhale.tune.search.training import WAIT_S, TrainingMotion
 
 # The mean age of a tick's conversions when the tick uses them.
@@ -35,8 +35,7 @@ def scale_of(
     late, cost = lateness_s(drills[0].experiment.table), judging.cost
     floor = np.stack([_least_errors(drill, plants, late, threads, judging) for drill in drills], axis=1)
     found = follow(drills, plants, before[None], threads=threads, limits=cost)
-    least = np.maximum(cost.least_room_share * floor, cost.least_room_rad)
-    return ErrorScale(floor, np.maximum(found.error[0] - floor, least), found.rattle[0])
+    return ErrorScale(floor, room_of(found.error[0], floor, cost), found.rattle[0])
 
 
 def lateness_s(table: ParameterTable) -> float:

@@ -11,23 +11,25 @@ training motions, the follower must not rattle, and its duty must not chatter mo
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any, TypedDict
 
 import numpy as np
 
+from greywhale import _native
 from greywhale.arm import ArmParameters
 from greywhale.arm.plants import columns
+from greywhale.base.limits import numbers_in
 from greywhale.base.types import Controllers, Flags, Floats, Integers
 from greywhale.files.trajectory import Trajectory
-from greywhale.loop import Experiment, Result, Timing
+from greywhale.loop import Experiment, Timing
 from greywhale.loop.leader_motions import minimum_jerk
-from greywhale.measure.swings import count_swings, duty_swings, ripple
-from greywhale.protocol.firmware import JOINTS, TICK_S
+from greywhale.measure.swings import MEASURE
+from greywhale.protocol.firmware import JOINTS
 from greywhale.protocol.table import ParameterTable
 from greywhale.tune.limits import TUNING_LIMITS, MarginLimits, TuningLimits
-from greywhale.tune.search.objective import follow, pair_with_plants
+from greywhale.tune.search.objective import follow, outcome_of, pair_with_plants
 from greywhale.tune.search.training import RATE_HZ, centre, reach, training_motions
 
 WAIT_S = 0.2  # before a motion begins
@@ -40,7 +42,7 @@ TWICE = "twice the loop gain"
 DELAY = "one period more delay"
 TEETH = "softer gear teeth"
 MOVING = "while moving"
-SCENARIOS = (AT_REST, HALF, TWICE, TEETH, DELAY, MOVING)
+SCENARIOS = (AT_REST, HALF, TWICE, TEETH, DELAY, MOVING)  # as Scenario in host/native/score/unrest.h
 
 
 class MarginFacts(TypedDict):
@@ -90,25 +92,36 @@ class Margin:
 class Unrest:
     """The unrest of every candidate on every plant, per joint: (n, k, 4) each, in the worst rest of the record."""
 
-    reversals: Integers
-    hunts: Flags  # turns so often
-    travel: Floats  # rad/s, in swings of a limit cycle
-    chatter: Floats  # 1/s, duty swings
-    chatters: Flags  # so much
-    ripple: Floats  # V rms
-    lost: Flags  # left the range of numbers
+    numbers: Floats  # (n, k, 4, 6), in the order of Unrest in host/native/score/unrest.h
+
+    @property
+    def reversals(self) -> Integers:
+        return self.numbers[..., 0].astype(np.int32)
+
+    @property
+    def travel(self) -> Floats:
+        """In swings of a limit cycle, rad/s."""
+        return self.numbers[..., 1]
+
+    @property
+    def chatter(self) -> Floats:
+        """Duty swings, 1/s."""
+        return self.numbers[..., 2]
+
+    @property
+    def ripple(self) -> Floats:
+        """V rms."""
+        return self.numbers[..., 3]
 
     @property
     def fails(self) -> Flags:
-        return self.hunts | self.chatters | self.lost
+        """Hunts, chatters or is lost."""
+        return np.asarray(self.numbers[..., 4] != 0.0)
 
-
-def _part(found: Unrest, plants: slice) -> Unrest:
-    return Unrest(*(getattr(found, field.name)[:, plants] for field in fields(found)))
-
-
-def _together(found: Sequence[Unrest]) -> Unrest:
-    return Unrest(*(np.concatenate([getattr(one, field.name) for one in found]) for field in fields(Unrest)))
+    @property
+    def lost(self) -> Flags:
+        """Left the range of numbers."""
+        return np.asarray(self.numbers[..., 5] != 0.0)
 
 
 class Margins:
@@ -159,7 +172,7 @@ class Margins:
             if key not in self._known:
                 self._known[key] = self._unrest(one[None], exact)
             each.append(self._known[key])
-        return {name: _together([one[name] for one in each]) for name in each[0]}
+        return {name: Unrest(np.concatenate([one[name].numbers for one in each])) for name in each[0]}
 
     def _unrest(self, controllers: Controllers, exact: bool) -> dict[str, Unrest]:
         """Simulate the unrest in every scenario of every candidate on every plant."""
@@ -167,7 +180,8 @@ class Margins:
         variants = variants_of(self.plants, self._beyond, self._judging.margins)
         prompt = self._run(self._prompt, controllers, np.concatenate(list(variants.values())), exact)
         found = {
-            name: _part(prompt, slice(number * plants, (number + 1) * plants)) for number, name in enumerate(variants)
+            name: Unrest(prompt.numbers[:, number * plants : (number + 1) * plants])
+            for number, name in enumerate(variants)
         }
         found[DELAY] = self._run(self._late, controllers, self.plants, exact)
         return found
@@ -175,24 +189,16 @@ class Margins:
     def _run(self, experiment: Experiment, controllers: Controllers, plants: Floats, exact: bool) -> Unrest:
         laws, arms = pair_with_plants(controllers, plants)
         run = experiment.run_exact if exact else experiment.run
-        return self._unrest_of(run(laws, arms, every=1, threads=self._threads), (len(controllers), len(plants)))
-
-    def _unrest_of(self, result: Result, shape: tuple[int, int]) -> Unrest:
-        """The worst of the rests in these traces."""
-        reversals = np.zeros((*shape, JOINTS), dtype=np.int32)
-        travel, chatter, loud = (np.zeros((*shape, JOINTS)) for _ in range(3))
-        for rows in self._rests:
-            seconds = (rows[1] - rows[0]) * TICK_S
-            swings = count_swings(result.angles, *rows, self._cycle.band_rad)
-            turned, moved = (one.reshape(*shape, JOINTS) for one in swings)
-            beats = duty_swings(result.duties, rows, self._table.board).reshape(*shape, JOINTS)
-            hiss = self._table.supply_v * ripple(result.duties, rows, self._table.board).reshape(*shape, JOINTS)
-            reversals = np.maximum(reversals, turned)
-            travel = np.maximum(travel, np.where(turned >= self._cycle.turns, moved / seconds, 0.0))
-            chatter, loud = np.maximum(chatter, beats / seconds), np.maximum(loud, hiss)
-        lost = np.repeat(result.diverged.reshape(shape)[:, :, None], JOINTS, axis=2)
-        hunts, chatters = reversals >= self._cycle.turns, chatter > self._judging.swings.chatter_at_rest_hz
-        return Unrest(reversals, hunts, travel, chatter, chatters, loud, lost)
+        found = _native.unrest(
+            outcome=outcome_of(run(laws, arms, every=1, threads=self._threads), self._table),
+            rests=self._rests,
+            band_rad=self._cycle.band_rad,
+            turns=self._cycle.turns,
+            supply_v=self._table.supply_v,
+            swings=numbers_in(self._judging.swings),
+            measure=MEASURE,
+        )
+        return Unrest(np.asarray(found).reshape(len(controllers), len(plants), JOINTS, -1))
 
     def check(self, controllers: Controllers) -> tuple[Margin, ...]:
         """Check one controller (4, 13) in the bench's own arithmetic: a verdict for each scenario and joint."""
@@ -235,22 +241,20 @@ class Margins:
 
 
 def penalty(
-    found: dict[str, Unrest], quiet_v: Floats, judging: TuningLimits = TUNING_LIMITS, *, strict: bool = False
+    found: Mapping[str, Unrest], quiet_v: Floats, judging: TuningLimits = TUNING_LIMITS, *, strict: bool = False
 ) -> Floats:
     """Price candidates (n, 4), mostly for scenarios that fail; `quiet_v` (4,) is the ripple that is allowed. With
     `strict` a failure costs more.
     """
-    limits = judging.margins
-    fail_price = limits.strict_fail_price if strict else limits.fail_price
-    share = found[AT_REST].ripple.mean(axis=1) / quiet_v
-    beyond = np.maximum(share - limits.search_ripple_share, 0.0)
-    total = limits.ripple_price * share + limits.loud_price * beyond
-    for scenario, one in found.items():
-        fails = (limits.teeth_price if scenario == TEETH else fail_price) * one.fails
-        excess = np.maximum(one.chatter / judging.swings.chatter_at_rest_hz - limits.search_chatter_share, 0.0)
-        price = limits.travel_price * one.travel + limits.chatter_price * excess + fails + limits.lost_price * one.lost
-        total = total + price.mean(axis=1)
-    return np.asarray(total, dtype=np.float64)
+    prices = _native.unrest_prices(
+        scenarios=[SCENARIOS.index(name) for name in found],
+        unrest=np.stack([one.numbers for one in found.values()]),
+        quiet_v=quiet_v.tolist(),
+        strict=strict,
+        margins=numbers_in(judging.margins),
+        swings=numbers_in(judging.swings),
+    )
+    return np.asarray(prices)
 
 
 def noise_seed(seed: int, noise: int) -> int:

@@ -19,7 +19,8 @@ cannot be helped. To this come, in every class,
 The cost of the class is the root of this sum, because the last tenth of the way matters more than the first. Large
 moves count half, and the two classes of fine following the other half. Of the plants, the mean counts half, and the
 worst plant the other half.
-`margins` adds the price of a joint that does not come to rest. The weights are in `CostLimits`.
+`margins` adds the price of a joint that does not come to rest. The weights are in `CostLimits`. All of it is worked out
+by `host/native/score`, for a page too; docs/tune.md has the formulas, and tests/tune/reference.py repeats them slowly.
 """
 
 from __future__ import annotations
@@ -29,19 +30,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from greywhale import _native
+from greywhale.base.limits import numbers_in
 from greywhale.base.types import Controllers, Floats
 from greywhale.loop import Result
 from greywhale.measure.limits import SWING_BOUNDS, SwingBounds
-from greywhale.measure.swings import chatter, rattle
-from greywhale.protocol.firmware import JOINTS
+from greywhale.measure.swings import MEASURE, first_block
+from greywhale.protocol.firmware import JOINTS, pwm_steps
+from greywhale.protocol.table import ParameterTable
 from greywhale.tune.limits import TUNING_LIMITS, CostLimits
 from greywhale.tune.search.training import WAIT_S, TrainingMotion
-
-
-def combine_plants(values: Floats, worst_share: float = TUNING_LIMITS.cost.worst_plant_share) -> Floats:
-    """Combine values (n, k, 4) over k plants to (n, 4): a part of the mean, and a part of the worst."""
-    mixed: Floats = (1.0 - worst_share) * values.mean(axis=1) + worst_share * values.max(axis=1)
-    return mixed
 
 
 def pair_with_plants(controllers: Controllers, plants: Floats) -> tuple[Controllers, Floats]:
@@ -52,8 +50,13 @@ def pair_with_plants(controllers: Controllers, plants: Floats) -> tuple[Controll
 
 
 def error_of(weighted: Floats, square: Floats, limits: CostLimits = TUNING_LIMITS.cost) -> Floats:
-    """The error in rad, of the weighted mean of |e| and the mean of e^2."""
-    return weighted + limits.rms_weight * np.sqrt(square)
+    """The error (n, 4) in rad, of the weighted mean of |e| and the mean of e^2."""
+    return np.asarray(_native.errors_of(weighted=weighted, square=square, cost=numbers_in(limits)))
+
+
+def room_of(error_before: Floats, floor: Floats, limits: CostLimits = TUNING_LIMITS.cost) -> Floats:
+    """The way from the floor to the error before, or the least that is no mere noise: (plants, classes, 4) in rad."""
+    return np.asarray(_native.rooms_of(before=error_before, floor=floor, cost=numbers_in(limits)))
 
 
 @dataclass(frozen=True)
@@ -97,9 +100,8 @@ class Objective:
         """(n, 4), over all plants; without the price of unrest. `exact`: in the bench's own arithmetic."""
         found = follow(self.drills, self.plants, controllers, exact=exact, threads=self.threads, limits=self.limits)
         supply = self.drills[0].experiment.table.supply_v
-        weights = np.array([drill.importance for drill in self.drills])
-        weighted = weights[:, None] * relative_costs(found, self.scale, supply, self.limits, self.swings)
-        return combine_plants(weighted.sum(axis=2) / weights.sum(), self.limits.worst_plant_share)
+        relative = relative_costs(found, self.scale, supply, self.limits, self.swings)
+        return total_costs(relative, [drill.importance for drill in self.drills], self.limits)
 
 
 def relative_costs(
@@ -110,14 +112,24 @@ def relative_costs(
     swings: SwingBounds = SWING_BOUNDS,
 ) -> Floats:
     """The cost of every class: (n, plants, classes, 4)."""
-    louder = np.maximum(found.rattle - np.maximum(scale.rattle, limits.unheard_rad), 0.0)
-    # One joint may come out a little below its floor, where a neighbour carries it.
-    avoidable = np.maximum(found.error - scale.floor, 0.0)
-    length = avoidable + limits.rattle_weight * (found.rattle + limits.louder_weight * louder)
-    unbearable = np.maximum(found.chatter / swings.chatter_moving_hz - limits.bearable_share, 0.0)
-    shaking = np.maximum(found.rattle / swings.rattle_moving_rad - limits.bearable_share, 0.0)
-    share = length / scale.room + limits.chatter_weight * unbearable + limits.shaking_weight * shaking
-    return np.sqrt(share + limits.effort_weight * found.volts / supply_v)
+    costs = _native.relative_costs(
+        found=_rows(found.error, found.volts, found.rattle, found.chatter),
+        scale=_rows(scale.floor, scale.room, scale.rattle),
+        supply_v=supply_v,
+        cost=numbers_in(limits),
+        swings=numbers_in(swings),
+    )
+    return np.asarray(costs)
+
+
+def _rows(*values: Floats) -> Floats:
+    """Values side by side, as the compiled code has them."""
+    return np.ascontiguousarray(np.stack(values, axis=-1))
+
+
+def total_costs(relative: Floats, importances: Sequence[float], limits: CostLimits = TUNING_LIMITS.cost) -> Floats:
+    """The costs (n, 4): of all classes, by their importance, and of the plants a part of the mean, and of the worst."""
+    return np.asarray(_native.total_costs(relative=relative, importances=importances, cost=numbers_in(limits)))
 
 
 def follow(
@@ -131,21 +143,35 @@ def follow(
 ) -> FollowingErrors:
     """Simulate every candidate on every plant and motion; `exact`: in the bench's own arithmetic."""
     laws, arms = pair_with_plants(controllers, plants)
-    shape = (len(controllers), len(plants), JOINTS)
-    kept: list[list[Floats]] = [[], [], [], []]
-    for drill in drills:
-        run = drill.experiment.run_exact if exact else drill.experiment.run
-        result = run(laws, arms, every=1, threads=threads)
-        for place, value in enumerate(_measures(drill, result, limits)):
-            kept[place].append(value.reshape(shape))
-    return FollowingErrors(*(np.stack(values, axis=2) for values in kept))
+    found = [_follow(drill, laws, arms, exact, threads, limits) for drill in drills]
+    rows = np.stack(found, axis=1).reshape(len(controllers), len(plants), len(drills), JOINTS, -1)
+    return FollowingErrors(*np.moveaxis(rows, -1, 0))
 
 
-def _measures(drill: TrainingMotion, result: Result, limits: CostLimits) -> tuple[Floats, Floats, Floats, Floats]:
-    """Error, volts, rattling and chatter (n k, 4) of one motion."""
-    experiment = drill.experiment
-    error = error_of(result.itae / drill.total_weight, result.mse, limits)
-    error[result.diverged] = limits.lost_cost
-    shaken = rattle(result.angles, experiment.leader, 1, WAIT_S)
-    shaken[result.diverged] = limits.lost_cost
-    return error, result.itau / drill.total_weight, shaken, chatter(result.duties, 1, experiment.table.board)
+def _follow(
+    drill: TrainingMotion, laws: Controllers, arms: Floats, exact: bool, threads: int, limits: CostLimits
+) -> Floats:
+    """Error, volts, rattling and chatter (rows, 4, 4) of one motion."""
+    run = drill.experiment.run_exact if exact else drill.experiment.run
+    found = _native.follow(
+        outcome=outcome_of(run(laws, arms, every=1, threads=threads), drill.experiment.table),
+        leader=drill.experiment.leader,
+        total_weight=drill.total_weight,
+        first_block=first_block(WAIT_S),
+        measure=MEASURE,
+        cost=numbers_in(limits),
+    )
+    return np.asarray(found)
+
+
+def outcome_of(result: Result, table: ParameterTable) -> _native.Outcome:
+    """A result with a row a tick, to be scored."""
+    return _native.Outcome(
+        mse=result.mse,
+        itae=result.itae,
+        itau=result.itau,
+        diverged=result.diverged,
+        angles=result.angles,
+        duties=result.duties,
+        pwm_top=pwm_steps(table.board),
+    )

@@ -1,0 +1,252 @@
+// What a candidate costs (score/). greywhale.tune keeps the limits and explains them; use that, not this.
+#include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
+#include <nanobind/stl/array.h>
+#include <nanobind/stl/vector.h>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <stdexcept>
+#include <vector>
+
+#include "arrays.h"
+#include "bindings.h"
+#include "score/following.h"
+#include "score/unrest.h"
+#include "share_out.h"
+
+namespace nb = nanobind;
+using namespace nb::literals;
+namespace score = greywhale::score;
+
+namespace {
+
+using greywhale::bind::Array;
+using greywhale::bind::In;
+using score::kJoints;
+
+// Structs of plain numbers come and go as arrays, whose last axis has a struct's fields.
+template <class T>
+constexpr std::size_t kNumbers = sizeof(T) / sizeof(double);
+template <class T>
+using Numbers = In<double, nb::shape<kNumbers<T>>>;
+
+template <class T>
+const T& struct_of(const Numbers<T>& numbers) {
+  return *reinterpret_cast<const T*>(numbers.data());
+}
+
+template <class T>
+nb::object rows_of(const std::vector<T>& values, std::size_t count) {
+  Array<double> rows({count, kJoints, kNumbers<T>});
+  std::copy_n(reinterpret_cast<const double*>(values.data()), values.size() * kNumbers<T>, rows.data());
+  return rows.numpy();
+}
+
+using Measure = Numbers<score::SwingMeasure>;
+using Cost = Numbers<score::CostLimits>;
+using Bounds = Numbers<score::SwingBounds>;
+using Quiet = std::array<double, kJoints>;
+using Singles = In<float, nb::shape<-1, -1, kJoints>>;
+using Duties = In<std::int16_t, nb::shape<-1, -1, kJoints>>;
+using Each = In<double, nb::shape<-1, kJoints>>;
+using Joints = std::array<int, kJoints>;
+using ErrorRows = In<double, nb::shape<-1, -1, -1, kJoints, kNumbers<score::Errors>>>;
+using ScaleRows = In<double, nb::shape<-1, -1, kJoints, kNumbers<score::Scale>>>;
+using CostRows = In<double, nb::shape<-1, -1, -1, kJoints>>;
+using UnrestRows = In<double, nb::shape<-1, -1, -1, kJoints, kNumbers<score::Unrest>>>;
+
+void require(bool sound, const char* otherwise) {
+  if (!sound) throw std::invalid_argument(otherwise);
+}
+
+nb::object rattle(const Singles& angles, const Each& leader, std::size_t stride, std::size_t first_block,
+                  const Measure& measure) {
+  const score::SwingMeasure& how = struct_of<score::SwingMeasure>(measure);
+  const std::size_t rows = angles.shape(1), every = static_cast<std::size_t>(how.filter_ticks);
+  require(stride > 0 && (rows + stride - 1) / stride == (leader.shape(0) + every - 1) / every,
+          "angles and leader differ in length.");
+  const score::Rattle beyond(leader.data(), leader.shape(0), first_block, how);
+  Array<double> found({angles.shape(0), kJoints});
+  greywhale::share_out(angles.shape(0), 0, [&](std::size_t n) {
+    const auto rms = beyond.of(angles.data() + n * rows * kJoints, stride);
+    std::copy(rms.begin(), rms.end(), found.data() + n * kJoints);
+  });
+  return found.numpy();
+}
+
+nb::object duty_swings(const Duties& duties, std::size_t first, std::size_t last, const Joints& pwm_top, double share) {
+  require(first <= last && last <= duties.shape(1), "the rows must lie within the traces, the first before the last.");
+  Array<std::int32_t> found({duties.shape(0), kJoints});
+  for (std::size_t n = 0; n < duties.shape(0); ++n) {
+    const std::int16_t* from = duties.data() + (n * duties.shape(1) + first) * kJoints;
+    const auto turns = score::duty_swings(from, last - first, pwm_top, share);
+    std::copy(turns.begin(), turns.end(), found.data() + n * kJoints);
+  }
+  return found.numpy();
+}
+
+// What the closed loop gave, with a trace of every tick.
+struct Outcome {
+  Each mse, itae, itau;
+  In<bool, nb::shape<-1>> diverged;
+  Singles angles;
+  Duties duties;
+  Joints pwm_top;
+
+  score::Run run() const {
+    return {angles.shape(0), angles.shape(1), mse.data(),    itae.data(), itau.data(),
+            diverged.data(), angles.data(),   duties.data(), pwm_top};
+  }
+};
+
+void make_outcome(Outcome* self, const Each& mse, const Each& itae, const Each& itau,
+                  const In<bool, nb::shape<-1>>& diverged, const Singles& angles, const Duties& duties,
+                  const Joints& pwm_top) {
+  const std::size_t count = angles.shape(0);
+  require(mse.shape(0) == count && itae.shape(0) == count && itau.shape(0) == count && diverged.shape(0) == count &&
+              duties.shape(0) == count && duties.shape(1) == angles.shape(1),
+          "measures and traces differ in number or length.");
+  new (self) Outcome{mse, itae, itau, diverged, angles, duties, pwm_top};
+}
+
+nb::object follow(const Outcome& outcome, const Each& leader, double total_weight, std::size_t first_block,
+                  const Measure& measure, const Cost& cost) {
+  const score::Run run = outcome.run();
+  require(leader.shape(0) == run.ticks, "angles and leader differ in length.");
+  const score::SwingMeasure& how = struct_of<score::SwingMeasure>(measure);
+  const score::Rattle beyond(leader.data(), run.ticks, first_block, how);
+  std::vector<score::Errors> found;
+  {
+    const nb::gil_scoped_release free;
+    found = score::follow(run, beyond, total_weight, how, struct_of<score::CostLimits>(cost));
+  }
+  return rows_of(found, run.count);
+}
+
+nb::object errors_of(const Each& weighted, const Each& square, const Cost& cost) {
+  require(weighted.shape(0) == square.shape(0), "weighted and square differ in length.");
+  Array<double> errors({weighted.shape(0), kJoints});
+  for (std::size_t at = 0; at < weighted.size(); ++at)
+    errors.data()[at] = score::error_of(weighted.data()[at], square.data()[at], struct_of<score::CostLimits>(cost));
+  return errors.numpy();
+}
+
+nb::object rooms_of(const In<double, nb::shape<-1, -1, kJoints>>& before,
+                    const In<double, nb::shape<-1, -1, kJoints>>& floor, const Cost& cost) {
+  require(before.size() == floor.size(), "before and floor differ in shape.");
+  Array<double> rooms({floor.shape(0), floor.shape(1), kJoints});
+  for (std::size_t at = 0; at < floor.size(); ++at)
+    rooms.data()[at] = score::room_of(before.data()[at], floor.data()[at], struct_of<score::CostLimits>(cost));
+  return rooms.numpy();
+}
+
+nb::object relative_costs(const ErrorRows& found, const ScaleRows& scale, double supply_v, const Cost& cost,
+                          const Bounds& swings) {
+  const std::size_t count = found.shape(0), plants = found.shape(1), classes = found.shape(2);
+  require(scale.shape(0) == plants && scale.shape(1) == classes, "errors and scale differ in plants or classes.");
+  Array<double> costs({count, plants, classes, kJoints});
+  const auto* errors = reinterpret_cast<const score::Errors*>(found.data());
+  const auto* scales = reinterpret_cast<const score::Scale*>(scale.data());
+  const std::size_t each = plants * classes * kJoints;
+  for (std::size_t at = 0; at < count * each; ++at)
+    costs.data()[at] = score::relative_cost(errors[at], scales[at % each], supply_v, struct_of<score::CostLimits>(cost),
+                                            struct_of<score::SwingBounds>(swings));
+  return costs.numpy();
+}
+
+nb::object total_costs(const CostRows& relative, const std::vector<double>& importances, const Cost& cost) {
+  const std::size_t count = relative.shape(0), each = relative.shape(1) * relative.shape(2) * kJoints;
+  require(relative.shape(2) == importances.size(), "every class needs its importance.");
+  Array<double> costs({count, kJoints});
+  for (std::size_t n = 0; n < count; ++n) {
+    const auto totals = score::total_costs(relative.data() + n * each, relative.shape(1), importances,
+                                           struct_of<score::CostLimits>(cost));
+    std::copy(totals.begin(), totals.end(), costs.data() + n * kJoints);
+  }
+  return costs.numpy();
+}
+
+nb::object unrest(const Outcome& outcome, const std::vector<std::array<std::size_t, 2>>& rests, double band_rad,
+                  double turns, double supply_v, const Bounds& swings, const Measure& measure) {
+  const score::Run run = outcome.run();
+  const score::SwingMeasure& how = struct_of<score::SwingMeasure>(measure);
+  for (const auto& [first, last] : rests)
+    require(first <= last && last <= run.ticks && static_cast<double>(last - first) >= how.ripple_ticks,
+            "each rest must lie within the traces, and be longer than the mean that is no ripple.");
+  std::vector<score::Unrest> found;
+  {
+    const nb::gil_scoped_release free;
+    found = score::unrest_of(run, {rests, band_rad, turns}, supply_v, struct_of<score::SwingBounds>(swings), how);
+  }
+  return rows_of(found, run.count);
+}
+
+std::vector<score::Scenario> scenarios_of(const std::vector<int>& numbers) {
+  std::vector<score::Scenario> scenarios;
+  for (const int number : numbers) scenarios.push_back(static_cast<score::Scenario>(number));
+  return scenarios;
+}
+
+nb::object unrest_prices(const std::vector<int>& scenarios, const UnrestRows& unrest, const Quiet& quiet_v, bool strict,
+                         const Numbers<score::MarginLimits>& margins, const Bounds& swings) {
+  require(scenarios.size() == unrest.shape(0), "every scenario needs its unrest.");
+  const score::Looked looked{scenarios_of(scenarios), unrest.shape(1), unrest.shape(2),
+                             reinterpret_cast<const score::Unrest*>(unrest.data())};
+  const auto found = score::unrest_prices(looked, quiet_v, strict, struct_of<score::MarginLimits>(margins),
+                                          struct_of<score::SwingBounds>(swings));
+  Array<double> prices({looked.count, kJoints});
+  std::copy(found.begin(), found.end(), prices.data());
+  return prices.numpy();
+}
+
+nb::object falls_short(const std::vector<int>& scenarios, const In<double, nb::shape<-1, -1, kJoints>>& failing,
+                       const Each& ripple_v, const Each& may_fail, const Quiet& quiet_v,
+                       const In<bool, nb::shape<-1, kJoints>>& kept, const Numbers<score::ChoiceLimits>& choice) {
+  const std::size_t count = ripple_v.shape(0);
+  require(failing.shape(0) == scenarios.size() && may_fail.shape(0) == scenarios.size(),
+          "every scenario needs what fails and what may fail.");
+  require(failing.shape(1) == count && kept.shape(0) == count, "failing, ripple_v and kept differ in length.");
+  const score::Seen seen{scenarios_of(scenarios), count, failing.data(), ripple_v.data()};
+  const auto found =
+      score::falls_short(seen, may_fail.data(), quiet_v, kept.data(), struct_of<score::ChoiceLimits>(choice));
+  Array<bool> marks({count, kJoints});
+  std::copy(found.begin(), found.end(), marks.data());
+  return marks.numpy();
+}
+
+}  // namespace
+
+void bind_score(nb::module_& m) {
+  nb::class_<Outcome>(m, "Outcome", "What candidates did, with a trace of every tick, to be scored.")
+      .def("__init__", &make_outcome, nb::kw_only(), "mse"_a.noconvert(), "itae"_a.noconvert(), "itau"_a.noconvert(),
+           "diverged"_a.noconvert(), "angles"_a.noconvert(), "duties"_a.noconvert(), "pwm_top"_a);
+  m.def("rattle", &rattle, nb::kw_only(), "angles"_a.noconvert(), "leader"_a, "stride"_a, "first_block"_a, "measure"_a,
+        "Rattle (n x 4) in rad rms of angles, n x rows x 4, of which every `stride`-th row is filtered.");
+  m.def("duty_swings", &duty_swings, nb::kw_only(), "duties"_a.noconvert(), "first"_a, "last"_a, "pwm_top"_a, "share"_a,
+        "Swings (int32, n x 4) of duties, n x rows x 4, by more than a share of each joint's full duty.");
+  m.def("follow", &follow, nb::kw_only(), "outcome"_a, "leader"_a.noconvert(), "total_weight"_a, "first_block"_a,
+        "measure"_a, "cost"_a, "Error, volts, rattle and chatter: n x 4 x 4.");
+  m.def("errors_of", &errors_of, nb::kw_only(), "weighted"_a, "square"_a, "cost"_a,
+        "Errors (n x 4) in rad, of weighted means of |e| and means of e^2.");
+  m.def("rooms_of", &rooms_of, nb::kw_only(), "before"_a, "floor"_a, "cost"_a,
+        "The room from each floor to the error before, plants x classes x 4.");
+  m.def("relative_costs", &relative_costs, nb::kw_only(), "found"_a, "scale"_a, "supply_v"_a, "cost"_a, "swings"_a,
+        "Costs n x plants x classes x 4, of errors (... x 4) beside a scale of floor, room and rattle.");
+  m.def("total_costs", &total_costs, nb::kw_only(), "relative"_a, "importances"_a, "cost"_a,
+        "Costs n x 4 over all plants and classes.");
+  m.def("unrest", &unrest, nb::kw_only(), "outcome"_a, "rests"_a, "band_rad"_a, "turns"_a, "supply_v"_a, "swings"_a,
+        "measure"_a, "Reversals, travel, chatter, ripple, fails and lost in the worst rest: n x 4 x 6.");
+  m.def("unrest_prices", &unrest_prices, nb::kw_only(), "scenarios"_a, "unrest"_a, "quiet_v"_a, "strict"_a, "margins"_a,
+        "swings"_a, "Prices n x 4 of the unrest in some scenarios, scenarios x n x plants x 4 x 6.");
+  m.def("falls_short", &falls_short, nb::kw_only(), "scenarios"_a, "failing"_a, "ripple_v"_a, "may_fail"_a, "quiet_v"_a,
+        "kept"_a, "choice"_a, "Who falls short of the standard, n x 4.");
+  m.def(
+      "quiet_ripple",
+      [](double ripple_before, double supply_v, const Bounds& swings) {
+        return score::quiet_ripple(ripple_before, supply_v, struct_of<score::SwingBounds>(swings));
+      },
+      nb::kw_only(), "ripple_before"_a, "supply_v"_a, "swings"_a, "The ripple (V) that is allowed at rest.");
+}
