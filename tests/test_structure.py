@@ -28,9 +28,7 @@ PAGE = ROOT / "host" / "web" / "src"
 PAGE_ROOMS = ["link", "parts", "session", "files", "tuner", "sources", "views", "entries"]
 UNKNOWN_TO_VIEWS = {"sources", "tuner"}
 # A rule that two languages hold is written twice: these files of the page repeat one of Python's, and no others may.
-TWINS = {
-    *("session/law.ts", "tuner/costs.ts", "tuner/search.ts", "tuner/space.ts", "tuner/unrest.ts", "tuner/wolf_whale.ts"),
-}
+TWINS = {"session/law.ts", "tuner/search.ts", "tuner/space.ts", "tuner/wolf_whale.ts"}
 # A docstring says what a thing is or does; one that begins with such a word describes it from outside, as a question.
 QUESTIONS = re.compile(r"(What|Whether|How|Where|Which|Who|Whose|When|Why|The same)\b")
 # The extension module, whose name begins with an underscore. It is a room of its own with public classes and functions.

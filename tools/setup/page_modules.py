@@ -50,7 +50,12 @@ class Module:
 BENCH = Module("bench", ("sim/arm", "sim/bench", "sim/board", "sim/web"), (), ("-O2",))
 TUNER = Module(
     "tuner",
-    ("firmware/lib/fuzzy_pdi", "sim/arm", "sim/web/no_exceptions.cpp", "host/native/closed_loop", "host/native/web"),
+    (
+        "firmware/lib/fuzzy_pdi",
+        "sim/arm",
+        "sim/web/no_exceptions.cpp",
+        *(f"host/native/{room}" for room in ("closed_loop", "score", "web")),
+    ),
     ("firmware/lib", "host/native"),
     ("-Os", "-msimd128"),
 )

@@ -1,7 +1,7 @@
 """Writes the data of the tuner inside a page: motions and their weights, the arm and its variants, the search.
 
 All of it is what `greywhale tune default --force` searches with, but for the motions: the page has straight lines
-between their rows, rounded to SCALE_RAD. host/native/web/exports.cpp takes the numbers.
+between their rows, rounded to SCALE_RAD. host/native/web takes the numbers.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from greywhale.base.limits import numbers_in
 from greywhale.base.types import Floats
 from greywhale.files.trajectory import Trajectory
 from greywhale.fuzzy.settings import LEAST_WIDTH, SET_UNIT
@@ -20,7 +21,7 @@ from greywhale.measure import swings
 from greywhale.measure.runs import stretches
 from greywhale.optimise import shift_invariant
 from greywhale.optimise.optimiser import PACK
-from greywhale.protocol.firmware import JOINTS, pwm_steps
+from greywhale.protocol.firmware import JOINTS
 from greywhale.protocol.table import CONTROLLER_COLUMNS
 from greywhale.tune import default, possible
 from greywhale.tune.judge import margins
@@ -70,9 +71,12 @@ def tuner_data() -> dict[str, Any]:
         "timing": [_timing(Timing()), _timing(Timing(late=model.period_ms))],
         "leader_pots": pot_numbers(model.arm.leader_pots),
         "follower_pots": pot_numbers(model.arm.follower_pots),
-        "pwm_top": pwm_steps(model.table.board),
-        "supply_v": model.table.supply_v,
-        "motion": {"scale": round(1.0 / SCALE_RAD), "apart": APART, "wait_s": training.WAIT_S},
+        "motion": {
+            "scale": round(1.0 / SCALE_RAD),
+            "apart": APART,
+            "wait_s": training.WAIT_S,
+            "soon_s": LIMITS.training.soon_s,
+        },
         "plant": model.plants[0].tolist(),
         "drills": _drills(model),
         "shown": SHOWN,
@@ -85,8 +89,7 @@ def tuner_data() -> dict[str, Any]:
             ),
             "judging": _rests(model, LIMITS.margins.long_rest_s, 1, 1.0, LIMITS.swings.limit_cycle),
         },
-        "rattle": _rattle(),
-        "prices": _prices(),
+        "limits": _limits(model.table.supply_v),
         "search": _search(model),
     }
 
@@ -121,8 +124,8 @@ def _drills(model: Model) -> list[dict[str, Any]]:
                 "moving": None if drill.name == training.SLOW else stretches(moving),
                 "total_weight": drill.total_weight,
                 "importance": drill.importance,
+                "first_block": swings.first_block(training.WAIT_S),
                 "floor": floor.tolist(),
-                "least_room": np.maximum(LIMITS.cost.least_room_share * floor, LIMITS.cost.least_room_rad).tolist(),
             }
         )
     return drills
@@ -134,55 +137,16 @@ def _rests(model: Model, rest_s: float, noise: int, beyond: float, cycle: swings
         "steps": steps_of(motion),
         "noise": _noise(margins.noise_seed(SEED, noise)),
         "ticks": margins.rest_ticks(rest_s),
-        "variants": {name: rows[0].tolist() for name, rows in margins.variants_of(model.plants, beyond).items()},
+        "variants": [rows[0].tolist() for rows in margins.variants_of(model.plants, beyond).values()],
         "band": cycle.band_rad,
         "turns": cycle.turns,
     }
 
 
-def _rattle() -> dict[str, Any]:
-    """The filter of swings.rattle for a record with a row a tick, and the size of a swing of the duty."""
-    return {
-        "sections": swings.SECTIONS.ravel().tolist(),
-        "blocks": [
-            swings.FILTER_EVERY,
-            swings.BLOCK,
-            round(swings.REACT_S / swings.BLOCK_S),
-            round(training.WAIT_S / swings.BLOCK_S),
-        ],
-        "swing": swings.CHATTER_SHARE,
-        "window": round(1000 * swings.RIPPLE_S),
-    }
-
-
-def _prices() -> dict[str, float]:
-    return {
-        "soon_s": LIMITS.training.soon_s,
-        "rms": LIMITS.cost.rms_weight,
-        "rattle": LIMITS.cost.rattle_weight,
-        "louder": LIMITS.cost.louder_weight,
-        "quiet_rad": LIMITS.cost.unheard_rad,
-        "chatter_moving": LIMITS.cost.chatter_weight,
-        "shaking": LIMITS.cost.shaking_weight,
-        "bearable": LIMITS.cost.bearable_share,
-        "chatter_moving_hz": LIMITS.swings.chatter_moving_hz,
-        "rattle_moving_rad": LIMITS.swings.rattle_moving_rad,
-        "effort": LIMITS.cost.effort_weight,
-        "lost": LIMITS.cost.lost_cost,
-        "chatter_at_rest_hz": LIMITS.swings.chatter_at_rest_hz,
-        "quiet_share": LIMITS.swings.quiet_share,
-        "search_ripple": LIMITS.margins.search_ripple_share,
-        "search_chatter": LIMITS.margins.search_chatter_share,
-        "travel": LIMITS.margins.travel_price,
-        "chatter_at_rest": LIMITS.margins.chatter_price,
-        "fail": LIMITS.margins.fail_price,
-        "teeth": LIMITS.margins.teeth_price,
-        "ripple": LIMITS.margins.ripple_price,
-        "loud": LIMITS.margins.loud_price,
-        "lost_at_rest": LIMITS.margins.lost_price,
-        "same": LIMITS.choice.same_ripple,
-        "shaken": LIMITS.choice.shaken_ripple,
-    }
+def _limits(supply_v: float) -> list[float]:
+    """In the order of Limits in host/native/web/score.cpp."""
+    groups = (LIMITS.cost, LIMITS.swings, LIMITS.margins, LIMITS.choice)
+    return [float(number) for number in (*swings.MEASURE, *np.concatenate(list(map(numbers_in, groups))), supply_v)]
 
 
 def _search(model: Model) -> dict[str, Any]:

@@ -4,12 +4,11 @@ import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
-import { Costs } from "../src/tuner/costs";
 import type { Controllers, TunerData } from "../src/tuner/data";
+import { Judge } from "../src/tuner/judge";
 import { TunerModule } from "../src/tuner/module";
 import { Search } from "../src/tuner/search";
 import { Tuning } from "../src/tuner/tuning";
-import { Standard } from "../src/tuner/unrest";
 
 type Golden = {
   pack: number; budget: number; before: Controllers; best: Controllers; curve: unknown; judged: Controllers[]; short: number[][];
@@ -24,17 +23,16 @@ const golden = json<Golden>(process.env["TUNING"] ?? "");
 const shipped = json<TunerData>(join(site, "tuner.json"));
 const data = { ...shipped, search: { ...shipped.search, pack: golden.pack, budget: golden.budget } };
 const module = await TunerModule.load(readFileSync(join(site, "tuner.wasm")), data);
-const standard = new Standard(module, data, golden.before);
+const judge = new Judge(module, data, golden.before);
 
 test("every cost and the best controllers of a search have the bits of greywhale tune's", () => {
-  const costs = new Costs(module, data, golden.before, standard.quietV);
-  const search = new Search(data.search, golden.before, module, (rows, refine) => costs.of(rows, refine));
+  const search = new Search(data.search, golden.before, module, (rows, refine) => judge.costs(rows, refine));
   for (const _ of search.run());
   assert.deepEqual([search.best, search.curve], [golden.best, golden.curve]);
 });
 
 test("the same joints fall short of what held before", () => {
-  assert.deepEqual(golden.judged.map((one) => standard.short(one)), golden.short);
+  assert.deepEqual(golden.judged.map((one) => judge.short(one)), golden.short);
   assert.ok(golden.short.some(({ length }) => length) && golden.short.some(({ length }) => !length));
 });
 

@@ -19,15 +19,15 @@ export type Drill = {
   readonly moving: readonly (readonly [number, number])[] | null; // ticks; null: all weigh the same
   readonly total_weight: number;
   readonly importance: number;
+  readonly first_block: number; // of rattle, after the wait
   readonly floor: readonly number[]; // rad
-  readonly least_room: readonly number[]; // rad
 };
 
 export type Rests = {
   readonly steps: Steps;
   readonly noise: Noise;
   readonly ticks: readonly (readonly [number, number])[];
-  readonly variants: Readonly<Record<string, readonly number[]>>; // the arm in each scenario
+  readonly variants: readonly (readonly number[])[]; // the arm in each scenario
   readonly band: number; // rad
   readonly turns: number; // so many are hunting
 };
@@ -69,28 +69,18 @@ export type SearchData = {
   readonly stretch: readonly { readonly column: number; readonly raw: number; readonly sets: readonly number[] }[];
 };
 
-export type Price =
-  | "soon_s" | "rms" | "rattle" | "louder" | "quiet_rad" | "chatter_moving" | "shaking" | "bearable" | "chatter_moving_hz"
-  | "rattle_moving_rad" | "effort" | "lost" | "chatter_at_rest_hz" | "quiet_share" | "search_ripple" | "search_chatter" | "travel"
-  | "chatter_at_rest" | "fail" | "teeth" | "ripple" | "loud" | "lost_at_rest" | "same" | "shaken";
-
 export type TunerData = {
   readonly settings: readonly number[];
   readonly timing: readonly [prompt: readonly number[], late: readonly number[]];
   readonly leader_pots: readonly number[];
   readonly follower_pots: readonly number[];
-  readonly supply_v: number;
-  readonly pwm_top: readonly number[];
-  readonly motion: { readonly scale: number; readonly apart: number; readonly wait_s: number };
+  readonly motion: { readonly scale: number; readonly apart: number; readonly wait_s: number; readonly soon_s: number };
   readonly plant: readonly number[];
   readonly drills: readonly Drill[];
   readonly shown: number; // the drill that a person sees
   /** Longer after the first stage of a search. */
   readonly rests: { readonly searching: Rests; readonly refining: Rests; readonly judging: Rests };
-  readonly rattle: {
-    readonly sections: readonly number[]; readonly blocks: readonly number[]; readonly swing: number; readonly window: number;
-  };
-  readonly prices: Readonly<Record<Price, number>>;
+  readonly limits: readonly number[]; // in the order of Limits in host/native/web/score.cpp
   readonly search: SearchData;
 };
 

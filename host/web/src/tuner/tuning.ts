@@ -1,23 +1,21 @@
 // A tuning from its start to what a person sees of it: search, the last look, and both controllers behind the same hand.
 
 import type { Tuned } from "../session/services";
-import { Costs } from "./costs";
 import type { Controllers, Row, TunerData } from "./data";
+import { Judge } from "./judge";
 import type { TunerModule } from "./module";
 import { Search, type Found } from "./search";
 import { rint, Space } from "./space";
-import { Standard } from "./unrest";
 
 const SHOWN_TICKS = 10; // between two points of a picture
 
 export class Tuning {
-  private readonly standard: Standard;
+  private readonly judge: Judge;
   private readonly search: Search;
 
   constructor(private readonly module: TunerModule, private readonly data: TunerData, private readonly before: Controllers) {
-    this.standard = new Standard(module, data, before);
-    const costs = new Costs(module, data, before, this.standard.quietV);
-    this.search = new Search(data.search, before, module, (rows, refine) => costs.of(rows, refine));
+    this.judge = new Judge(module, data, before);
+    this.search = new Search(data.search, before, module, (rows, refine) => this.judge.costs(rows, refine));
   }
 
   /** Searches, a batch at each step. */
@@ -32,7 +30,7 @@ export class Tuning {
     const steps = best.map(() => 0);
     for (;;) {
       const changed = after.flatMap((row, joint) => (row === before[joint] ? [] : [joint]));
-      const short = changed.length ? this.standard.short(after) : [];
+      const short = changed.length ? this.judge.short(after) : [];
       if (!short.length) break;
       const own = changed.filter((joint) => short.includes(joint));
       for (const joint of own.length ? own : changed) { // else it is a neighbour's doing
@@ -58,13 +56,12 @@ export class Tuning {
     const drill = this.data.drills[this.data.shown]!;
     const experiment = this.module.addDrill(drill, drill.judging);
     this.module.run(experiment, [this.before, after]);
-    const found = this.module.following(experiment, 2);
     const [first, second] = [0, 1].map((row) => this.module.trace(experiment, row, SHOWN_TICKS));
     return {
       after, calmed,
       time_s: first!.leader.map((_, place) => (place * SHOWN_TICKS) / 1000),
       leader: first!.leader, followers: [first!.follower, second!.follower],
-      mse: found.map((row) => row.map(({ mse }) => mse)),
+      mse: this.module.mse(experiment, 2),
     };
   }
 }
