@@ -10,7 +10,7 @@ import pytest
 
 import greywhale
 from greywhale.adapt.limits import ADAPTATION_LIMITS
-from greywhale.base.limits import BY_JUDGEMENT, changed, limit, limits_in, markdown_table
+from greywhale.base.limits import changed, limit, limits_in, markdown_table
 from greywhale.commission.limits import COMMISSIONING_LIMITS
 from greywhale.identify.limits import IDENTIFICATION_LIMITS
 from greywhale.measure.limits import SWING_LIMITS
@@ -48,8 +48,8 @@ class Own:
 
 def test_a_table_has_a_row_for_each_limit_of_its_own() -> None:
     assert markdown_table(Own()).splitlines()[2:] == [
-        f"| `rest.still_rad` | 0.02 rad | a hand trembles | {BY_JUDGEMENT} |",
-        "| `gaps_m` | 1.5, 2 m | two of them | measured |",
+        "| `rest.still_rad` | **0.02 rad** – a hand trembles |",
+        "| `gaps_m` | **1.5, 2 m** – two of them (measured) |",
     ]
 
 

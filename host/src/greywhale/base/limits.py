@@ -85,9 +85,16 @@ def changed(limits: Any, usual: Any) -> dict[str, Any]:
 
 
 def markdown_table(limits: Any) -> str:
-    """The limits as a table for the documentation."""
-    rows = [f"| `{one.name}` | {_shown(one)} | {one.reason} | {one.origin} |" for one in limits_in(limits)]
-    return "\n".join(["| limit | value | reason | origin |", "|---|---|---|---|", *rows])
+    """The limits as a table for the documentation; an origin stands there if it is more than judgement.
+
+    Value and reason share a cell: a few values are lists, and a column of their own would leave no room for reasons.
+    """
+    rows = [f"| `{one.name}` | **{_shown(one)}** – {one.reason}{_origin(one)} |" for one in limits_in(limits)]
+    return "\n".join(["| limit | value – reason |", "|---|---|", *rows])
+
+
+def _origin(one: Limit) -> str:
+    return "" if one.origin == BY_JUDGEMENT else f" ({one.origin})"
 
 
 def _shown(one: Limit) -> str:
