@@ -14,7 +14,7 @@ def page(declaration: Declaration) -> str:
         f"<!-- {NOTICE} -->",
         "# The serial link",
         _frame(declaration),
-        "## Messages",
+        "## Messages\n\nA field's line has the byte where it begins, its type, its name and its meaning.",
         *_messages(declaration),
         "## Lists of values",
         *(_enum(enum) for enum in declaration.enums),
@@ -62,14 +62,8 @@ def _messages(declaration: Declaration) -> list[str]:
         if message.reply is not None:
             reply = replies[message.type + REPLY_BIT]
             sides = {"request": message, f"reply 0x{reply.type:02X}": reply}
-        sizes = ", ".join(f"{side or 'payload'}: {_bytes(one.size)}" for side, one in sides.items())
-        rows = [row for side, one in sides.items() for row in _rows(side, one)]
-        table = ["| | at | type | name | meaning |", "|---|---:|---|---|---|", *rows]
-        parts.append(
-            f"### {message.name} (0x{message.type:02X})\n\n{message.description} {sizes[0].upper()}{sizes[1:]}."
-        )
-        if rows:
-            parts.append("\n".join(table))
+        parts.append(f"### {message.name} (0x{message.type:02X})\n\n{message.description}")
+        parts += [_fields(side or "payload", one) for side, one in sides.items()]
     return parts
 
 
@@ -77,12 +71,14 @@ def _bytes(count: int) -> str:
     return "1 byte" if count == 1 else f"{count or 'no'} bytes"
 
 
-def _rows(side: str, message: Message) -> list[str]:
-    rows, offset = [], 0
+def _fields(side: str, message: Message) -> str:
+    """A message's size, and a line for each field: where it begins, its type and what it says."""
+    head = f"{side[0].upper()}{side[1:]}: {_bytes(message.size)}."
+    lines, offset = [], 0
     for field in message.fields:
-        rows.append(f"| {side} | {offset} | {_type(field)} | `{field.name}` | {_meaning(field)} |")
+        lines.append(f"- {offset}, {_type(field)} `{field.name}`: {_meaning(field)}")
         offset += field.size
-    return rows
+    return "\n".join([head, "", *lines]) if lines else head
 
 
 def _enum(enum: Enum) -> str:
@@ -100,10 +96,15 @@ def _enum(enum: Enum) -> str:
     ]
     lines = [
         _row(head),
-        _row(["---:"] + ["---"] * (len(head) - 1)),
+        _line(len(head)),
         *(_row(row) for row in rows),
     ]
     return "\n".join([f"### {enum.name}", "", enum.description, "", *lines])
+
+
+def _line(columns: int) -> str:
+    """The line below a table's head: numbers in the first column, text in the others."""
+    return f"|---:{'|---' * (columns - 1)}|"
 
 
 def _row(cells: list[str]) -> str:
@@ -165,6 +166,4 @@ def _group(group: Group, first: int) -> str:
         for place, p in enumerate(group.parameters)
     ]
     head = ["place" if group.count > 1 else "index", "name", "type", "unit", "lsb", "range", "default", "meaning"]
-    return "\n".join(
-        [f"### {group.title}", "", group.description, "", where, "", _row(head), _row(["---:"] + ["---"] * 7), *rows]
-    )
+    return "\n".join([f"### {group.title}", "", group.description, "", where, "", _row(head), _line(len(head)), *rows])
