@@ -6,7 +6,6 @@ from __future__ import annotations
 
 import gc
 import os
-import re
 import signal
 import tempfile
 from collections.abc import Generator, Iterator
@@ -17,6 +16,7 @@ from xdist.scheduler import LoadScopeScheduling
 
 from greywhale.base.errors import UserError
 from greywhale.base.runtime import VARIABLE
+from tests.support.sentences import is_sentence
 
 # What a test finds depends on the code alone: neither on chance nor on the load of the machine.
 settings.register_profile("suite", deadline=None, derandomize=True)
@@ -45,15 +45,6 @@ def pytest_collection() -> Generator[None, object, object]:
         gc.freeze()
         gc.set_threshold(50_000, 20, 20)
         gc.enable()
-
-
-# A name or a value that is missing from a sentence.
-HOLE = re.compile(r"``|(?<!\w)\(\)|\bNone\b|\{\w+\}|  |^:|: [.:]")
-
-
-def is_sentence(message: str) -> bool:
-    """True if an error is one printable line that ends, with a value wherever it has room for one."""
-    return message.isprintable() and message.endswith((".", "?")) and not HOLE.search(message)
 
 
 @pytest.fixture(autouse=True)

@@ -18,6 +18,7 @@ from greywhale.loop import default_controller
 from greywhale.protocol import schema
 from greywhale.tune.limits import WITHOUT_FLOORS
 from tests.board.fake_board import FakeBoard
+from tests.support.sentences import names
 from tests.support.tuning import judge_nothing, shorten
 from tests.tune.models import log_facts, write_model
 from tools import ROOT
@@ -54,30 +55,30 @@ def no_floors(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.parametrize(
-    ("code", "words", "sentence"),
+    ("code", "words", "things"),
     [
-        (2, "model.toml --budget many", "Invalid value for '--budget': 'many' is not a valid integer."),
-        (2, "model.toml --method newton", "Invalid value for '--method': 'newton' is not one of 'default', 'paper'"),
-        (2, "model.toml --samples 0", "samples is 0, but it must be at least 1."),
-        (2, "model.toml --bounds Ku=3-9", "--bounds Ku=3-9: bounds look like NAME=LOW..HIGH, Ku=3..9 for one."),
-        (2, "model.toml --bounds Ku=nan..9", "the bounds of Ku are nan and 9; give two finite numbers."),
-        (2, f"model.toml --budget 1{30 * '0'}", f"budget is 1{30 * '0'}, but it must be at most 1000000."),
-        (2, "model.toml --seed 2147483648", "seed is 2147483648, but it must be at most 2147483647."),
-        (2, "model.toml --workers 100000", "workers is 100000, but it must be at most 1024."),
-        (2, "model.toml --bounds Ku=3..9 --bounds ku=3..8", "--bounds ku=3..8: Ku has bounds already; give them once."),
-        (2, "model.toml --out /dev/null", "/dev/null: cannot be written: not an ordinary file; write elsewhere."),
-        (2, "model.toml --resume", "controller.toml.journal: no interrupted tuning is there to go on with;"),
-        (1, "model.toml --start none.toml", "none.toml: cannot be read: no such file or directory."),
-        (1, "model.toml --start model.toml", "model.toml: this is a model, but a controller file is needed here"),
-        (1, "table.toml", "table.toml: this is a controller file"),
-        (1, "model.toml --params table.toml", "table.toml: this is a controller file"),
-        (1, "doubtful.toml", "doubtful.toml: it was not validated on a second log; record another one and identify"),
-        (1, "default", "default: nothing in it was identified: it is an arm file, not a model; make a model from"),
-        (1, "log.csv", "log.csv: not valid TOML"),
+        (2, "model.toml --budget many", "--budget many integer"),
+        (2, "model.toml --method newton", "--method newton default paper"),
+        (2, "model.toml --samples 0", "samples 0 1"),
+        (2, "model.toml --bounds Ku=3-9", "--bounds Ku=3-9 NAME=LOW..HIGH"),
+        (2, "model.toml --bounds Ku=nan..9", "bounds Ku nan 9 finite"),
+        (2, f"model.toml --budget 1{30 * '0'}", f"budget 1{30 * '0'} 1000000"),
+        (2, "model.toml --seed 2147483648", "seed 2147483648 2147483647"),
+        (2, "model.toml --workers 100000", "workers 100000 1024"),
+        (2, "model.toml --bounds Ku=3..9 --bounds ku=3..8", "--bounds ku=3..8 Ku already"),
+        (2, "model.toml --out /dev/null", "/dev/null ordinary file"),
+        (2, "model.toml --resume", "controller.toml.journal no interrupted"),
+        (1, "model.toml --start none.toml", "none.toml no file"),
+        (1, "model.toml --start model.toml", "model.toml model controller file"),
+        (1, "table.toml", "table.toml controller file model"),
+        (1, "model.toml --params table.toml", "table.toml controller file parameter"),
+        (1, "doubtful.toml", "doubtful.toml not validated second log record"),
+        (1, "default", "default nothing identified arm file"),
+        (1, "log.csv", "log.csv TOML"),
     ],
-)  # fmt: skip
-def test_what_will_not_do_is_one_sentence_before_any_work(
-    no_work: None, model: Path, monkeypatch: pytest.MonkeyPatch, capsys: Captured, code: int, words: str, sentence: str
+)
+def test_what_will_not_do_is_named_before_any_work(
+    no_work: None, model: Path, monkeypatch: pytest.MonkeyPatch, capsys: Captured, code: int, words: str, things: str
 ) -> None:
     monkeypatch.chdir(model.parent)
     write_model(Path("doubtful.toml"), log=[log_facts()])
@@ -87,7 +88,7 @@ def test_what_will_not_do_is_one_sentence_before_any_work(
     assert entry.run(["tune", *words.split()]) == code
     said = capsys.readouterr()
     assert said.out == ""
-    assert said.err.startswith(f"greywhale: {sentence}")
+    assert names(said.err, f"greywhale: {things}")
     assert said.err.count("\n") == 1
     assert sorted(path.name for path in model.parent.iterdir()) == before
 

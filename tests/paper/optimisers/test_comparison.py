@@ -21,6 +21,7 @@ from greywhale_paper.optimisers.comparison_report import as_dict, statement, tex
 from greywhale_paper.optimisers.functions import SETTINGS
 from greywhale_paper.pictures.ranks import plot_ranks
 from tests.pictures.sight import faults
+from tests.support.sentences import names
 
 SMALL = Plan(("sphere", "ackley"), SETTINGS, ("gwo-woa", "de", "cma-es"), dimensions=3, budget=60, runs=4, seed=7)
 
@@ -139,20 +140,21 @@ def test_every_method_is_named_beside_its_line_and_no_name_is_over_another(noise
 
 
 @pytest.mark.parametrize(
-    ("change", "sentence"),
+    ("change", "things"),
     [
-        ({"functions": ("sphere", "cube")}, "there is no function 'cube'; there are sphere, elliptic"),
-        ({"methods": ()}, "no method was chosen"),
-        ({"methods": ("de", "de")}, "method 'de' was chosen twice"),
-        ({"dimensions": 1}, "dimensions is 1, but it must be at least 2."),
-        ({"budget": 10**12}, "budget is 1000000000000, but it must be at most 10000000."),
-        ({"seed": 1 << 31}, "seed is 2147483648, but it must be at most 2147483647."),
-        ({"methods": ("de",), "pack": 4}, "the pack is 4, but de needs at least 5."),
+        ({"functions": ("sphere", "cube")}, "no function cube sphere elliptic"),
+        ({"methods": ()}, "no method"),
+        ({"methods": ("de", "de")}, "method de twice"),
+        ({"dimensions": 1}, "dimensions 1 2"),
+        ({"budget": 10**12}, "budget 1000000000000 10000000"),
+        ({"seed": 1 << 31}, "seed 2147483648 2147483647"),
+        ({"methods": ("de",), "pack": 4}, "pack 4 de 5"),
     ],
 )
-def test_impossible_plans_are_refused_before_anything_runs(change: dict[str, object], sentence: str) -> None:
-    with pytest.raises(UserError, match=sentence.replace(".", r"\.")) as refused:
+def test_impossible_plans_are_refused_before_anything_runs(change: dict[str, object], things: str) -> None:
+    with pytest.raises(UserError) as refused:
         compare(Plan(**change))  # type: ignore[arg-type]
+    assert names(refused.value.message, things)
     assert refused.value.exit_code == 2
 
 
