@@ -8,6 +8,7 @@ import { ArmView } from "../views/arm3d/view";
 import { LeaderControl } from "../views/bench/leader_control";
 import { BenchView } from "../views/bench/view";
 import { CalibrateView } from "../views/calibrate/view";
+import { FirmwareCard } from "../views/connect/firmware_card";
 import { ConnectView } from "../views/connect/view";
 import { ControllerView } from "../views/controller/view";
 import { TryCards } from "../views/first_visit/try_cards";
@@ -27,7 +28,6 @@ import { PageBoard } from "../sources/in_page/board";
 import type { BenchData } from "../sources/in_page/messages";
 import { PageTuner, type TunerParts } from "../sources/in_page/tuner";
 import { SerialBoard } from "../sources/serial/board";
-import { readImage } from "../sources/serial/flash/image";
 
 /** The parts that the page is made of. */
 export type Parts = {
@@ -83,19 +83,22 @@ function offerOthers(shell: Shell, docs: string | null): void {
 }
 
 async function showBench({ code, data, worker, tuner, firmware, docs }: Parts): Promise<void> {
-  const { memory } = readImage(await firmware("mega"));
-  const board = new PageBoard(worker, code, data, memory, browserStore);
+  const board = new PageBoard(worker, code, data, firmware, browserStore);
   const session = new Session(board);
   const leaderControl = new LeaderControl(board, session);
   const arm = new ArmView(session, { arm: async () => data.description });
   arm.leadBy(leaderControl);
   const controller = new ControllerView(session, null, new PageTuner(tuner));
+  const benchFirmware = new FirmwareCard(
+    session, board, "The board runs the very image that a real Mega gets. Write it anew through its bootloader, or one of your own.",
+    (act) => void session.attempt(act),
+  );
   const cards = new TryCards(session, board, leaderControl, docs, () => {
     shell.show(controller);
     document.getElementById("view")!.focus(); // the button is gone
   });
   const views = [
-    beside(arm, cards), new LiveView(session), controller, new ParametersView(session), new BenchView(session, board, leaderControl, null),
+    beside(arm, cards), new LiveView(session), controller, new ParametersView(session), new BenchView(session, board, leaderControl, null, benchFirmware),
   ];
   let state: PageState | null = null;
   let problem = "";

@@ -53,13 +53,13 @@ export class BenchLoop {
     return true;
   }
 
-  /** A frame of the page. */
-  send(frame: Uint8Array): void {
-    this.requests.feed(frame, ({ type }) => {
+  /** What the page sends: frames, or words to a bootloader. */
+  send(data: Uint8Array): void {
+    this.requests.feed(data, ({ type }) => {
       if (type === EnableRequest.type || type === LeadRequest.type) this.renewing = true;
       if (type === StopRequest.type) this.renewing = false;
     });
-    this.module.send(frame);
+    this.module.send(data);
   }
 
   /** Does one thing to the bench, or fails with a sentence and changes nothing. */

@@ -3,18 +3,26 @@
 import type { Board, BoardListener } from "../../session/board";
 import { SIZES, type BenchControls, type BenchWish, type Bench as BenchActions, type Range, type Size } from "../../session/services";
 import { encodeFrame } from "../../link/frames";
+import { upperFirst } from "../../link/refusal";
 import { StopRequest } from "../../link/schema";
+import type { NamedText } from "../../parts/named_text";
+import { sentenceOf } from "../../parts/sentence";
 import type { Store } from "../../parts/storage";
+import type { BoardPort, Report } from "../../session/port";
+import { flash } from "../serial/flash/flash";
+import { readImage } from "../serial/flash/image";
 import { keepEeprom, keptEeprom } from "./eeprom";
 import { SPEED } from "./bench_loop";
 import type { BenchData, FromBench, ToBench } from "./messages";
+import { PagePort } from "./port";
 
 const PORT = "an Arduino Mega and an arm, simulated in this page";
 const RESTARTED = "The board restarted, and its motors are off.";
+const FLASHING = "The board is being flashed.";
 const UNPOWERED = "The board has no power.";
 const UNKEPT = "This browser has no room to keep what the board stores; it ends with this page.";
 
-export class PageBoard implements Board, BenchActions {
+export class PageBoard implements Board, BenchActions, Pick<BoardPort, "flash"> {
   private listener: BoardListener | null = null;
   private readonly wishes = new Map<number, (error: string | null) => void>();
   private wished = 0;
@@ -23,10 +31,12 @@ export class PageBoard implements Board, BenchActions {
   private led: readonly number[] | "held" | null = null; // null while it reaches here and there
   private keptSentence = ""; // of what the browser had kept; told once the board is there
   private unkeptTold = false;
+  private port: PagePort | null = null; // while the board is being flashed
 
-  /** `worker` runs worker.ts, `code` is the module, `firmware` the board's memory, `store` the browser's own. */
+  /** `worker` runs worker.ts, `code` is the module, `firmware` gives the HEX file of a board, `store` is the browser's own. */
   constructor(
-    private readonly worker: Worker, private readonly code: ArrayBuffer, private readonly data: BenchData, private readonly firmware: Uint8Array,
+    private readonly worker: Worker, private readonly code: ArrayBuffer, private readonly data: BenchData,
+    private readonly firmware: (board: string) => Promise<NamedText>,
     private readonly store: Store,
   ) {
     this.sizes = Object.fromEntries(SIZES.map((size) => [size, this.range(size).value])) as Record<Size, number>;
@@ -37,8 +47,13 @@ export class PageBoard implements Board, BenchActions {
 
   listen(listener: BoardListener): void {
     this.listener = listener;
+    this.start().catch((error: unknown) => this.failed(`${upperFirst(sentenceOf(error))}; load the page again.`));
+  }
+
+  private async start(): Promise<void> {
+    const { memory } = readImage(await this.firmware("mega"));
     const kept = keptEeprom(this.store);
-    this.tell({ kind: "start", code: this.code, data: this.data, firmware: this.firmware, eeprom: kept.content });
+    this.tell({ kind: "start", code: this.code, data: this.data, firmware: memory, eeprom: kept.content });
     this.showVisible();
     this.keptSentence = kept.sentence;
     this.unkeptTold = !this.store.allowed;
@@ -60,11 +75,12 @@ export class PageBoard implements Board, BenchActions {
         this.drive();
         break;
       case "bytes":
-        this.listener?.bytes(message.data);
+        if (this.port) this.port.hear(message.data);
+        else this.listener?.bytes(message.data);
         this.tell({ kind: "taken", count: message.data.length });
         break;
       case "restarted":
-        this.listener?.link({ open: true, port: PORT, sentence: RESTARTED });
+        if (!this.port) this.listener?.link({ open: true, port: PORT, sentence: RESTARTED });
         break;
       case "eeprom":
         if (!keepEeprom(this.store, message.content) && !this.unkeptTold) {
@@ -89,8 +105,27 @@ export class PageBoard implements Board, BenchActions {
     this.listener?.link({ open: false, port: "", sentence });
   }
 
-  send(frame: Uint8Array): void {
-    this.tell({ kind: "send", frame });
+  send(data: Uint8Array): void {
+    if (!this.port) this.tell({ kind: "send", data });
+  }
+
+  async flash(file: NamedText | null, report: Report): Promise<string> {
+    const { speed } = this.sizes;
+    await this.change({ speed: 1 }); // a flasher waits for a bootloader by the wall clock
+    this.listener?.driver({ you: false, free: false, verb: null });
+    this.listener?.link({ open: false, port: "", sentence: FLASHING });
+    this.port = new PagePort({
+      send: (data) => this.tell({ kind: "send", data }),
+      restart: () => this.tell({ kind: "reset" }),
+    });
+    try {
+      return await flash(this.port, file, this.firmware, report);
+    } finally {
+      this.port = null;
+      this.listener?.link({ open: true, port: PORT, sentence: "" });
+      this.drive();
+      await this.change({ speed });
+    }
   }
 
   drive(): void {

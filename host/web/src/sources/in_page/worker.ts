@@ -34,7 +34,10 @@ class Bench {
       case "start":
         break;
       case "send":
-        this.guard(() => this.loop.send(message.frame));
+        this.guard(() => this.loop.send(message.data));
+        break;
+      case "reset":
+        this.guard(() => this.module.call("reset"));
         break;
       case "wish":
         this.change(message);

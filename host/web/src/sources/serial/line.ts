@@ -6,6 +6,9 @@ import { sentenceOf } from "../../parts/sentence";
 const DTR_DOWN_MS = 50; // a board's reset line needs some 2 ms
 const BUFFER_BYTES = 65_536; // of the browser, for a page that reads late
 
+/** What is used of a browser's serial port. */
+export type Port = Pick<SerialPort, "open" | "close" | "setSignals" | "readable" | "writable">;
+
 export type Ear = { heard(data: Uint8Array): void; lost(): void };
 
 export const wait = (ms: number): Promise<void> => new Promise((done) => setTimeout(done, ms));
@@ -16,12 +19,12 @@ export class SerialLine {
   private readonly ended: Promise<void>;
   private closing = false;
 
-  private constructor(private readonly port: SerialPort, private readonly ear: Ear) {
+  private constructor(private readonly port: Port, private readonly ear: Ear) {
     this.writer = port.writable!.getWriter();
     this.ended = this.read();
   }
 
-  static async open(port: SerialPort, baudRate: number, ear: Ear): Promise<SerialLine> {
+  static async open(port: Port, baudRate: number, ear: Ear): Promise<SerialLine> {
     try {
       await port.open({ baudRate, bufferSize: BUFFER_BYTES });
     } catch (error) {

@@ -27,7 +27,7 @@ export class BenchView implements View {
   /** Recorded motions are files of a host, where there is one. */
   constructor(
     private readonly session: Session, private readonly bench: Bench, private readonly leaderControl: LeaderControl,
-    private readonly services: Pick<Services, "state"> | null,
+    private readonly services: Pick<Services, "state"> | null, private readonly firmware: { readonly element: HTMLElement } | null = null,
   ) {
     session.changed.on(() => this.show());
   }
@@ -55,7 +55,7 @@ export class BenchView implements View {
     this.lead = new Lead(this.leaderControl, this.session.samples, controls.leader);
     this.drawn = new DrawnMotion(this.leaderControl, controls.leader);
     this.cards.replaceChildren(el("div", { class: "side" }, this.lead.element, this.drawn.element),
-      el("div", { class: "side" }, this.motions(), this.faults(controls), this.sizes(controls)));
+      el("div", { class: "side" }, this.motions(), this.faults(controls), this.sizes(controls), ...(this.firmware ? [this.firmware.element] : [])));
   }
 
   private change(wish: BenchWish): Promise<boolean> {

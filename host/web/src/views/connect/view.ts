@@ -1,10 +1,10 @@
 // Connects a board by hand, with or without restarting it, and writes firmware onto it.
 
-import { button, el, fileField, setText } from "../../parts/dom";
+import { button, el, setText } from "../../parts/dom";
 import type { View } from "../view";
-import type { NamedText } from "../../parts/named_text";
 import type { BoardPort } from "../../session/port";
 import type { Session } from "../../session/session";
+import { FirmwareCard } from "./firmware_card";
 
 export class ConnectView implements View {
   readonly name = "Port";
@@ -13,10 +13,7 @@ export class ConnectView implements View {
   private readonly now = el("p", { attrs: { role: "status" } });
   private readonly buttons: readonly HTMLButtonElement[];
   private readonly letGo = button("Disconnect", () => this.act(() => this.port.disconnect()), { title: "Motors off, and the port free for another program" });
-  private readonly bar = el("progress", { hidden: true, attrs: { "aria-label": "Flashing" } });
-  private readonly stage = el("p", { class: "quiet", attrs: { role: "status" } });
-  private readonly write: HTMLButtonElement;
-  private image: Promise<NamedText> | null = null;
+  private readonly firmware: FirmwareCard;
   private busy = false;
 
   constructor(private readonly session: Session, private readonly port: BoardPort) {
@@ -28,15 +25,16 @@ export class ConnectView implements View {
       connect("Another port", false, true, "Choose the port anew"),
     ];
     this.buttons[0]!.classList.add("primary");
-    const file = fileField("A HEX file in its place", ".hex", (given) => { this.image = given; });
-    this.write = button("Flash", () => this.act(() => this.flash()), { title: "Write it through the board's bootloader, and read it back" });
+    this.firmware = new FirmwareCard(
+      session, port,
+      "The bootloader tells whether it is a Mega 2560 or a Nano; its own firmware comes with this page. What the board has stored stays.",
+      (act) => this.act(act),
+    );
     this.element = el("div", { class: "editor connect" },
       el("section", { class: "card" }, el("h2", {}, "Board at a port"), this.now,
         el("div", { class: "row" }, ...this.buttons, this.letGo),
         el("p", { class: "quiet" }, "A browser raises DTR when it opens a port. Where it was low, an Arduino restarts by that and its motors are off; no page can prevent it, and this one says so. The motors' lease is renewed only while this page is visible.")),
-      el("section", { class: "card" }, el("h2", {}, "Firmware"),
-        el("p", {}, "The bootloader tells whether it is a Mega 2560 or a Nano; its own firmware comes with this page. What the board has stored stays."),
-        el("div", { class: "row" }, file), el("div", { class: "row" }, this.write), this.bar, this.stage));
+      this.firmware.element);
     session.changed.on(() => this.show());
     this.show();
   }
@@ -51,28 +49,10 @@ export class ConnectView implements View {
     });
   }
 
-  private async flash(): Promise<void> {
-    setText(this.stage, "");
-    try {
-      const board = await this.port.flash(await this.image, (stage, share) => {
-        this.bar.hidden = false;
-        this.bar.value = share;
-        setText(this.stage, stage);
-      });
-      const { hello } = this.session;
-      setText(this.stage, `The ${board} holds what was written${hello ? `; firmware ${hello.fw_major}.${hello.fw_minor}.${hello.fw_patch} runs` : ""}.`);
-    } catch (error) {
-      setText(this.stage, "");
-      throw error;
-    } finally {
-      this.bar.hidden = true;
-    }
-  }
-
   private show(): void {
     const { link } = this.session;
     setText(this.now, link.open ? `${link.port}${link.sentence ? `: ${link.sentence}` : " is connected."}` : link.sentence);
-    for (const one of [...this.buttons, this.write]) one.disabled = this.busy || this.port.missing !== "";
+    for (const one of [...this.buttons, this.firmware]) one.disabled = this.busy || this.port.missing !== "";
     this.letGo.disabled = this.busy || !link.open;
   }
 }

@@ -5,6 +5,7 @@ import { LinkError } from "../../../link/declared";
 import { upperFirst } from "../../../link/refusal";
 import type { NamedText } from "../../../parts/named_text";
 import type { Report } from "../../../session/port";
+import type { Port } from "../line";
 import { bootloaderOf, type Bootloader } from "./bootloader";
 import { checkImage, hex, readImage, type Image } from "./image";
 import { ATTEMPTS, ERASED, LOOP, ROUNDS, TARGETS } from "./rules";
@@ -15,7 +16,7 @@ type Dialect = { readonly language: number; readonly baud: number };
 
 /** Writes the file, or else the firmware of the board that answers; the board's name. The port is closed afterwards. */
 export async function flash(
-  port: SerialPort, file: NamedText | null, firmware: (board: string) => Promise<NamedText>, report: Report,
+  port: Port, file: NamedText | null, firmware: (board: string) => Promise<NamedText>, report: Report,
 ): Promise<string> {
   const images = await readImages(file, firmware);
   report("looking for the bootloader", 0);
@@ -47,7 +48,7 @@ function withLoop(image: Image, { page }: Target): Image {
 }
 
 /** Writes the first page, and lets the board start. Once after each restart: a second write erases the Mega's next page. */
-async function writeFirst(port: SerialPort, dialect: Dialect, wanted: Uint8Array, { page }: Target): Promise<void> {
+async function writeFirst(port: Port, dialect: Dialect, wanted: Uint8Array, { page }: Target): Promise<void> {
   const content = new Uint8Array(page).fill(ERASED);
   content.set(wanted);
   for (let left = ATTEMPTS; left; left--) {
@@ -76,7 +77,7 @@ async function readImages(
   return new Map(await Promise.all(TARGETS.map(async (board) => [board, chosen ?? readImage(await firmware(board.name))] as const)));
 }
 
-async function findBootloader(port: SerialPort): Promise<{ talk: Talk; dialect: Dialect; bootloader: Bootloader }> {
+async function findBootloader(port: Port): Promise<{ talk: Talk; dialect: Dialect; bootloader: Bootloader }> {
   const dialects = TARGETS.flatMap(({ language, bauds }) => bauds.map((baud): Dialect => ({ language, baud })));
   for (let round = 0; round < ROUNDS; round++) {
     for (const dialect of dialects) {

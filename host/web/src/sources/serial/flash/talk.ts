@@ -1,6 +1,6 @@
 // A line to a bootloader, an answer at a time.
 
-import { SerialLine, wait } from "../line";
+import { SerialLine, wait, type Port } from "../line";
 import { ANSWER_MS, ASK_EVERY_MS, QUESTIONS, START_MS, STILL_MS } from "./rules";
 
 export class Talk {
@@ -9,7 +9,7 @@ export class Talk {
   private line!: SerialLine;
 
   /** Opens the port at a bootloader's speed and restarts the board, which starts the bootloader. */
-  static async open(port: SerialPort, baud: number): Promise<Talk> {
+  static async open(port: Port, baud: number): Promise<Talk> {
     const talk = new Talk();
     talk.line = await SerialLine.open(port, baud, {
       heard: (data) => {
