@@ -47,10 +47,6 @@ class Calibration:
     def pots(self) -> tuple[int, ...]:
         return tuple(pot for pot in range(len(POTS)) if pot % JOINTS in self.joints)
 
-    def angles(self, counts: Floats) -> Floats:
-        """(..., 8) rad of counts (..., 8)."""
-        return (counts - self.zero) * self.scale
-
     def changes(self) -> dict[str, int]:
         """Raw values by parameter name; a joint that is not in use gets a scale of 0 at both arms. Raises UserError
         where a value does not fit.
