@@ -146,12 +146,9 @@ EXPORT(starts) unsigned exported_starts() { return static_cast<unsigned>(stand->
 EXPORT(in_bootloader) unsigned exported_in_bootloader() { return stand->board.in_bootloader(); }
 EXPORT(cycle) double exported_cycle() { return static_cast<double>(stand->board.cycle()); }
 
-// The board's EEPROM, to and from the buffer; how many bytes it has, and how often it was written.
+// The board's EEPROM, to and from the buffer; how many bytes it has.
 EXPORT(read_eeprom) unsigned exported_read_eeprom() { return show(stand->board.eeprom().content()); }
 EXPORT(write_eeprom) void exported_write_eeprom(unsigned count) { stand->board.eeprom().set_content(given(count)); }
-EXPORT(eeprom_writes) unsigned exported_eeprom_writes() {
-  return static_cast<unsigned>(stand->board.eeprom().writes());
-}
 
 EXPORT(press_estop) void exported_press_estop(unsigned pressed) { stand->bench.press_estop(pressed != 0); }
 EXPORT(press_clutch) void exported_press_clutch(unsigned pressed) { stand->bench.press_clutch(pressed != 0); }

@@ -34,7 +34,7 @@ ONLY_KEPT = """(build) => {
   caches.keys().then((names) => { window.kept = names.join(); });
   return window.kept?.lastIndexOf("greywhale") === 0 && window.kept.endsWith(build);
 }"""
-KEPT, ASIDE = "greywhale-eeprom", "greywhale-eeprom-damaged"
+KEPT, ASIDE = "greywhale-eeprom-mega", "greywhale-eeprom-damaged"
 
 
 @dataclass(frozen=True)
@@ -221,3 +221,21 @@ def test_what_is_stored_is_there_after_a_reload_unless_it_is_damaged(visited: Pa
     visited.reload()
     expect(visited.locator(".notice")).to_contain_text("is damaged; it is set aside")
     assert visited.evaluate("(key) => localStorage.getItem(key)", ASIDE) == "no memory"
+
+
+@opened("Bench")
+def test_the_board_in_the_page_takes_firmware_through_its_bootloader(visited: Page) -> None:
+    """An image for another chip is refused, and leaves the board as it was."""
+    await_state(visited, "following")
+    visited.get_by_role("button", name="Stop").click()
+    flash = visited.get_by_role("button", name="Flash", exact=True)
+    image = ROOT / "firmware/.pio/build/nanoatmega328/firmware.hex"
+    visited.get_by_label("A HEX file in its place").set_input_files(image)
+    flash.click()
+    expect(visited.locator(".notice")).to_contain_text("this image is for an Arduino Nano", timeout=30_000)
+    await_state(visited, "disabled")
+    visited.evaluate("() => document.querySelector('input[type=file]').click()")  # takes the file away
+    flash.click()
+    expect(visited.get_by_text("The Arduino Mega 2560 holds what was written; firmware")).to_be_visible(timeout=60_000)
+    visited.get_by_role("button", name="Enable", exact=True).click()
+    await_state(visited, "following")

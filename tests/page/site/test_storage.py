@@ -13,7 +13,7 @@ from tests.page.storage import FORBIDDEN, NONE
 
 pytestmark = pytest.mark.slow
 
-KEPT, ASIDE = "greywhale-eeprom", "greywhale-eeprom-damaged"
+KEPT, ASIDE = "greywhale-eeprom-mega", "greywhale-eeprom-damaged"
 # Damaged content, with room beside it for so many letters.
 FILL = """([key, text, room]) => {
   localStorage.clear();

@@ -39,7 +39,7 @@ export class BenchLoop {
   /** Lets a tick pass; what the board said, the callee's only until the next call. */
   tick(): Uint8Array {
     this.ticks++;
-    if (this.renewing && this.ticks % RENEW_TICKS === 0) this.module.send(RENEW);
+    if (this.renewing && this.ticks % RENEW_TICKS === 0) this.send(RENEW);
     if (this.reachesSince !== null) this.module.lead(this.reaching((this.ticks - this.reachesSince) / 1000));
     return this.module.tick();
   }
@@ -53,8 +53,9 @@ export class BenchLoop {
     return true;
   }
 
-  /** What the page sends: frames, or words to a bootloader. */
-  send(data: Uint8Array): void {
+  /** What the page sends: words to a bootloader, or frames. A bootloader would take these for words, and wait for more. */
+  send(data: Uint8Array, flashes = false): void {
+    if (!flashes && this.module.call("in_bootloader")) return;
     this.requests.feed(data, ({ type }) => {
       if (type === EnableRequest.type || type === LeadRequest.type) this.renewing = true;
       if (type === StopRequest.type) this.renewing = false;

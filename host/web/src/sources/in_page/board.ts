@@ -106,7 +106,7 @@ export class PageBoard implements Board, BenchActions, Pick<BoardPort, "flash"> 
   }
 
   send(data: Uint8Array): void {
-    if (!this.port) this.tell({ kind: "send", data });
+    if (!this.port) this.tell({ kind: "send", data, flashes: false });
   }
 
   async flash(file: NamedText | null, report: Report): Promise<string> {
@@ -115,7 +115,7 @@ export class PageBoard implements Board, BenchActions, Pick<BoardPort, "flash"> 
     this.listener?.driver({ you: false, free: false, verb: null });
     this.listener?.link({ open: false, port: "", sentence: FLASHING });
     this.port = new PagePort({
-      send: (data) => this.tell({ kind: "send", data }),
+      send: (data) => this.tell({ kind: "send", data, flashes: true }),
       restart: () => this.tell({ kind: "reset" }),
     });
     try {

@@ -29,7 +29,7 @@ export type BenchData = {
 
 export type ToBench =
   | { kind: "start"; code: ArrayBuffer; data: BenchData; firmware: Uint8Array; eeprom: Uint8Array | null }
-  | { kind: "send"; data: Uint8Array }
+  | { kind: "send"; data: Uint8Array; flashes: boolean } // to a bootloader, or frames to the firmware
   | { kind: "reset" } // the board's reset line
   | { kind: "wish"; id: number; wish: BenchWish }
   | { kind: "visible"; on: boolean } // time stands still for a page that nobody sees

@@ -19,14 +19,15 @@ class Bench {
   private readonly clock = new Clock();
   private visible = true;
   private unread = 0;
-  private writes: number;
+  private kept: Uint8Array; // of the EEPROM
+  private restarted = false; // and has said nothing since
   private readonly timer = setInterval(() => this.guard(() => this.turn()), TURN_MS);
 
   constructor(private readonly module: BenchModule, { data, eeprom }: Extract<ToBench, { kind: "start" }>) {
     if (eeprom) module.setEeprom(eeprom);
     this.loop = new BenchLoop(module, data);
     this.pass(this.loop.start().slice()); // by its hello, the page learns what the board stores
-    this.writes = module.call("eeprom_writes");
+    this.kept = module.eeprom();
   }
 
   hear(message: ToBench): void {
@@ -34,7 +35,7 @@ class Bench {
       case "start":
         break;
       case "send":
-        this.guard(() => this.loop.send(message.data));
+        this.guard(() => this.loop.send(message.data, message.flashes));
         break;
       case "reset":
         this.guard(() => this.module.call("reset"));
@@ -72,8 +73,10 @@ class Bench {
     if (this.module.call("crashed")) throw new Error("the program on its board has crashed");
     const size = said.reduce((sum, piece) => sum + piece.length, 0);
     this.keepEeprom(); // before the board can say that it has stored something
-    if (this.loop.restarted()) page.postMessage({ kind: "restarted" });
+    this.restarted ||= this.loop.restarted();
     if (size) {
+      if (this.restarted) page.postMessage({ kind: "restarted" });
+      this.restarted = false;
       const data = new Uint8Array(size);
       said.reduce((at, piece) => (data.set(piece, at), at + piece.length), 0);
       this.pass(data);
@@ -86,10 +89,10 @@ class Bench {
   }
 
   private keepEeprom(): void {
-    const writes = this.module.call("eeprom_writes");
-    if (writes === this.writes) return;
-    this.writes = writes;
-    page.postMessage({ kind: "eeprom", content: this.module.eeprom() });
+    const content = this.module.eeprom(); // not a count of writes, which is ahead of a busy cell
+    if (content.every((byte, i) => byte === this.kept[i])) return;
+    this.kept = content;
+    page.postMessage({ kind: "eeprom", content });
   }
 
   private guard(act: () => void): void {
