@@ -28,16 +28,20 @@ function other(path: Path, text: string): Problem[] {
   return [{ path, kind: "other", text }];
 }
 
+function wrong(path: Path, value: Toml, rule: string): Problem[] {
+  return other(path, rules.wrongValue({ key: keyPath(path), value: quoted(value), rule }));
+}
+
 function problemsOf(value: Toml, schema: Schema, path: Path): Problem[] {
-  const [key, { type }] = [keyPath(path), schema];
+  const { type } = schema;
   if (!IS[type]!(value)) {
     const rule = rules.TYPE_RULES[type as keyof typeof rules.TYPE_RULES];
-    if (!Array.isArray(value) && !isTable(value)) return other(path, rules.wrongValue({ key, value: quoted(value), rule }));
-    return other(path, path.length ? rules.wrongTable({ key, rule }) : rule);
+    if (!Array.isArray(value) && !isTable(value)) return wrong(path, value, rule);
+    return other(path, path.length ? rules.wrongTable({ key: keyPath(path), rule }) : rule);
   }
-  if (isNumber(value)) return outside(value, schema) ? other(path, rules.wrongValue({ key, value: quoted(value), rule: boundsOf(schema) })) : [];
+  if (isNumber(value)) return outside(value, schema) ? wrong(path, value, boundsOf(schema)) : [];
   if (Array.isArray(value)) return problemsOfList(value as readonly Toml[], schema, path);
-  return isTable(value) && schema.properties ? problemsOfTable(value, schema.properties, schema.required ?? [], path) : [];
+  return isTable(value) ? problemsOfTable(value, schema, path) : [];
 }
 
 function outside(value: number | bigint, { minimum, maximum }: Schema): boolean {
@@ -54,8 +58,10 @@ function boundsOf(schema: Schema): string {
 }
 
 /** One after the other; those of a list with a type for each that are not there, and the number of all. */
-function problemsOfList(items: readonly Toml[], { prefixItems, items: each, minItems: exactly = 0 }: Schema, path: Path): Problem[] {
-  const found = items.slice(0, exactly).flatMap((one, place) => problemsOf(one, prefixItems?.[place] ?? each!, [...path, place]));
+function problemsOfList(items: readonly Toml[], schema: Schema, path: Path): Problem[] {
+  const { prefixItems, minItems: exactly = 0 } = schema;
+  const found = items.slice(0, exactly)
+    .flatMap((one, place) => problemsOf(one, prefixItems?.[place] ?? schema.items!, [...path, place]));
   if (items.length === exactly) return found;
   const key = keyPath(path);
   if (prefixItems && items.length < exactly) {
@@ -66,14 +72,16 @@ function problemsOfList(items: readonly Toml[], { prefixItems, items: each, minI
   return [...found, { path, kind: "count", text: words({ count: items.length, key, exactly }) }];
 }
 
-function problemsOfTable(value: TomlTable, known: Readonly<Record<string, Schema>>, required: readonly string[], path: Path): Problem[] {
+function problemsOfTable(value: TomlTable, { properties: known, required = [] }: Schema, path: Path): Problem[] {
+  if (!known) return [];
   const missing = (key: string): Problem[] =>
     required.includes(key) ? other([...path, key], rules.missingKey({ key: keyPath([...path, key]) })) : [];
-  const problems = Object.entries(known).flatMap(([key, schema]) =>
-    value[key] === undefined ? missing(key) : problemsOf(value[key], schema, [...path, key]));
+  const problems = Object.entries(known).flatMap(([key, inside]) =>
+    value[key] === undefined ? missing(key) : problemsOf(value[key], inside, [...path, key]));
   const unknown = Object.keys(value).filter((key) => !Object.hasOwn(known, key)).map((key): Problem => {
     const place = [...path, key];
-    return { path: place, kind: "unknown", text: rules.unknownKey({ key: keyPath(place), advice: advice(key, Object.keys(known)) }) };
+    const text = rules.unknownKey({ key: keyPath(place), advice: advice(key, Object.keys(known)) });
+    return { path: place, kind: "unknown", text };
   });
   return [...problems, ...unknown];
 }
@@ -82,7 +90,8 @@ function problemsOfTable(value: TomlTable, known: Readonly<Record<string, Schema
 export function require(content: TomlTable, schema: Schema, name: string): void {
   const problems = problemsOf(content, schema, []);
   problems.sort((a, b) => Number(b.kind === "unknown") - Number(a.kind === "unknown"));
-  const within = ({ path }: Problem): boolean => problems.some((one) => one.path.length > path.length && path.every((part, i) => one.path[i] === part));
+  const within = ({ path }: Problem): boolean =>
+    problems.some((one) => one.path.length > path.length && path.every((part, i) => one.path[i] === part));
   const own = problems.filter((one) => one.kind !== "count" || !within(one));
   if (!own.length) return;
   throw new LinkError(`${name}: ${own[0]!.text}${own.length > 1 ? rules.more({ count: own.length - 1 }) : ""}.`);

@@ -26,11 +26,13 @@ export function controllerIn(file: NamedText): ReadonlyMap<string, number> {
   }
   const raw = new Map<string, number>();
   const found = [...storedIn(data, CONTROLLER, [])];
-  for (const { parameter, value, scale } of found) raw.set(parameter.name, inFile(name, () => rawOf(parameter, scale * value)));
+  for (const { parameter, value, scale } of found) {
+    raw.set(parameter.name, inFile(name, () => rawOf(parameter, scale * value)));
+  }
   for (const { path, parameter, value, scale } of found) {
     if (path[0] !== "joint" || !value || raw.get(parameter.name)) continue;
-    const [of, key] = [keyPath(path.slice(0, 2)), path.at(-1)!];
-    throw new LinkError(`${name}: ${tooSmallInFile({ key: `${of}.${key}`, value: short(value), least: short(parameter.lsb / scale) })}`);
+    const key = `${keyPath(path.slice(0, 2))}.${path.at(-1)!}`;
+    throw new LinkError(`${name}: ${tooSmallInFile({ key, value: short(value), least: short(parameter.lsb / scale) })}`);
   }
   return raw;
 }
@@ -43,7 +45,9 @@ function* storedIn(value: Toml | undefined, schema: Schema, path: Path): Generat
     if (given === undefined) return;
     yield { path, parameter: TABLE.named(parameter.replace("{}", String(joint))), value: Number(given), scale };
   } else if (Array.isArray(value)) {
-    for (const [place, one] of (value as readonly Toml[]).entries()) yield* storedIn(one, prefixItems?.[place] ?? items!, [...path, place]);
+    for (const [place, one] of (value as readonly Toml[]).entries()) {
+      yield* storedIn(one, prefixItems?.[place] ?? items!, [...path, place]);
+    }
   } else if (isTable(value)) {
     for (const [key, inside] of Object.entries(properties ?? {})) yield* storedIn(value[key], inside, [...path, key]);
   }

@@ -59,6 +59,7 @@ function requireOrder(raw: readonly number[]): void {
     if (!below) continue;
     const other = TABLE.named(below);
     if (raw[index]! < raw[other.index]!) continue;
-    throw new LinkError(notBelow({ name, value: short(raw[index]! * lsb), other: below, most: shown(other, raw[other.index]! * other.lsb) }));
+    const most = shown(other, raw[other.index]! * other.lsb);
+    throw new LinkError(notBelow({ name, value: short(raw[index]! * lsb), other: below, most }));
   }
 }

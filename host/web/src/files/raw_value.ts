@@ -7,7 +7,8 @@ import { short } from "./words";
 /** The nearest raw value in range. */
 export function rawOf(parameter: Parameter, value: number): number {
   const { name, lsb, minimum, maximum, nonzero } = parameter;
-  const advice = (nonzero ? chooseBut0 : choose)({ least: short(minimum * lsb), most: shown(parameter, maximum * lsb) });
+  const range = { least: short(minimum * lsb), most: shown(parameter, maximum * lsb) };
+  const advice = nonzero ? chooseBut0(range) : choose(range);
   if (!Number.isFinite(value)) throw new LinkError(parameterNotFinite({ name, value: short(value), advice }));
   const raw = Math.floor(value / lsb + 0.5);
   if (raw >= minimum && raw <= maximum && (raw || !nonzero)) return raw;
@@ -19,7 +20,8 @@ export function rawAsGiven(parameter: Parameter, value: number): number {
   const raw = rawOf(parameter, value);
   const { name, lsb } = parameter;
   if (lsb === 1 && raw !== value) throw new LinkError(notWhole({ name, value: shown(parameter, value) }));
-  if (!raw && value) throw new LinkError(tooSmall({ name, value: shown(parameter, value), least: shown(parameter, lsb) }));
+  const least = shown(parameter, lsb);
+  if (!raw && value) throw new LinkError(tooSmall({ name, value: shown(parameter, value), least }));
   return raw;
 }
 

@@ -1,6 +1,6 @@
 // Types of the generated rules for files.
 
-/** A JSON Schema as far as the host's have it; a number also names the parameter that keeps it, in so many units of that. */
+/** A JSON Schema as far as the host's have it. */
 export type Schema = {
   readonly type: string;
   readonly minimum?: number;
@@ -12,8 +12,8 @@ export type Schema = {
   readonly properties?: Readonly<Record<string, Schema>>; // any, if it has none
   readonly required?: readonly string[];
   readonly default?: string | number;
-  readonly parameter?: string; // "joint{}.kp": of each joint
-  readonly scale?: number;
+  readonly parameter?: string; // that keeps a number: "joint{}.kp", of each joint
+  readonly scale?: number; // so many units of the parameter are one of the file's
 };
 
 /** A kind of file, who takes it, and keys that only this one has. */

@@ -15,7 +15,8 @@ export function readToml({ name, text: whole, spoiltAt }: NamedText): TomlTable 
   if (spoiltAt !== undefined) throw new LinkError(`${name}: ${rules.notUtf8({ at: spoiltAt })}`);
   const text = whole.replace(/^\ufeff/, "");
   const most = rules.LONGEST_TEXT;
-  if (text.length > most && [...text].length > most) throw new LinkError(`${name}: ${rules.tooLong({ count: [...text].length, most })}`);
+  const count = text.length > most ? [...text].length : 0;
+  if (count > most) throw new LinkError(`${name}: ${rules.tooLong({ count, most })}`);
   const mark = findMark(text);
   if (mark?.deep) throw new LinkError(`${name}, line ${mark.line}: ${mark.words}`);
   let data: TomlTable;

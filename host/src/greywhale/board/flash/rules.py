@@ -15,7 +15,7 @@ from greywhale.protocol.schema import Board
 
 START_S = 0.1  # from the reset until a bootloader listens: the start-up delay of an Arduino's fuses is 65 ms
 ANSWER_S = 0.5  # for an answer; to take in a page at 57600 baud and to write it takes less than 50 ms
-QUESTIONS = 2  # after a restart: a bootloader that listens answers the first, the second is for one that was lost on the way
+QUESTIONS = 2  # a bootloader that listens answers the first after a restart, the second is for one that was lost on the way
 ASK_EVERY_S = 0.4  # optiboot, of newer Nanos, looks at nothing while it flashes its LED for 375 ms, and has room for one question then; of more it loses bytes, and what it makes of the others starts the firmware
 QUESTIONS_AFTER_LOSS = 10  # after bytes were lost: the first questions end the message that lacks them
 ASK_AFTER_LOSS_S = 0.05  # time for each of those: a bootloader that is running answers within a few ms

@@ -7,7 +7,7 @@ import type { NamedText } from "../../../parts/named_text";
 import type { Report } from "../../../session/port";
 import type { Port } from "../line";
 import { bootloaderOf, type Bootloader } from "./bootloader";
-import { checkImage, hex, readImage, type Image } from "./image";
+import { checkImage, hex, hexNumber, readImage, type Image } from "./image";
 import { ATTEMPTS, ERASED, LOOP, ROUNDS, TARGETS } from "./rules";
 import { Talk } from "./talk";
 import { titleOf, type Target } from "./targets";
@@ -127,13 +127,12 @@ async function verify(bootloader: Bootloader, { memory }: Image, { page }: Targe
     const wrong = wanted.findIndex((byte, i) => byte !== found[i]);
     if (wrong >= 0) {
       const [is, was] = [hex(found.subarray(wrong, wrong + 1)), hex(wanted.subarray(wrong, wrong + 1))];
-      const address = `0x${(at + wrong).toString(16)}`;
-      throw new LinkError(upperFirst(wrongByte({ found: `0x${is}`, address, wanted: `0x${was}` })));
+      throw new LinkError(upperFirst(wrongByte({ found: `0x${is}`, address: hexNumber(at + wrong), wanted: `0x${was}` })));
     }
     report("verifying", (at + page) / memory.length);
   }
 }
 
 function stopped(what: string, at: number): string {
-  return `The bootloader stopped answering while ${what} at address 0x${at.toString(16)}; check the cable and flash the board again.`;
+  return `The bootloader stopped answering while ${what} at address ${hexNumber(at)}; check the cable and flash the board again.`;
 }

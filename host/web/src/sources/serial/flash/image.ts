@@ -16,11 +16,17 @@ export function hex(bytes: Uint8Array): string {
   return Array.from(bytes, (byte) => byte.toString(16).padStart(2, "0")).join("");
 }
 
+export function hexNumber(value: number): string {
+  return `0x${value.toString(16)}`;
+}
+
 export function readImage({ name, text }: NamedText): Image {
   const memory = new Uint8Array(LARGEST).fill(rules.ERASED);
   let end = 0;
   for (const { address, data } of chunks(name, text)) {
-    if (address + data.length > LARGEST) throw new LinkError(`${name}: ${sentences.beyondAnyBoard({ address: `0x${address.toString(16)}` })}`);
+    if (address + data.length > LARGEST) {
+      throw new LinkError(`${name}: ${sentences.beyondAnyBoard({ address: hexNumber(address) })}`);
+    }
     if (!data.length) continue;
     memory.set(data, address);
     end = Math.max(end, address + data.length);
