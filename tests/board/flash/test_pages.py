@@ -109,14 +109,14 @@ def test_what_is_lost_on_the_way_is_asked_for_again(kind: Kind, asked: str, what
 
 
 @BOTH
-@pytest.mark.parametrize("asked", ["write", "read"])
+@pytest.mark.parametrize(("asked", "doing"), [("write", "writing"), ("read", "reading")])
 @pytest.mark.parametrize("what", ["question", "garbled"])
 def test_a_bootloader_that_is_silent_or_wrong_for_good_is_named_with_the_address(
-    kind: Kind, asked: str, what: str, tmp_path: Path
+    kind: Kind, asked: str, doing: str, what: str, tmp_path: Path
 ) -> None:
     with board(kind, spoil=spoil(what, asked, 2, 3, 4)) as to:
-        where = rf"{to.port}: the bootloader stopped answering at address {2 * to.page:#x}; check the cable"
-        with pytest.raises(UserError, match=where):
+        where = rf"{to.port}: the bootloader stopped answering while {doing} at address {2 * to.page:#x}; check the"
+        with pytest.raises(UserError, match=f"{where} cable"):
             write(to, image(tmp_path, (0, PATTERN)))
         assert not to.left
 

@@ -52,6 +52,6 @@ def test_a_bootloader_that_answers_wrongly_again_and_again_is_named(tmp_path: Pa
     path = write_image(tmp_path / "image.hex")
     with (
         Version2(115200, MEGA2560, spoil=lambda asked, count: "garbled" if asked == "read" else "") as board,
-        pytest.raises(UserError, match="stopped answering at address 0x0; check the cable and try again"),
+        pytest.raises(UserError, match="stopped answering while reading at address 0x0; check the cable and try again"),
     ):
         compare_image(board.port, path)

@@ -53,5 +53,6 @@ NO_ROOM = "the image reaches up to byte {end}, but an {board} has room for {spac
 NO_BOOTLOADER = (
     "no bootloader answers at {bauds} baud; check that the board's reset works, or burn a bootloader with a programmer."
 )
+SILENT = "the bootloader stopped answering while {doing} at address {address}; check the cable and try again."
 OTHER_CHIP = "the chip has {signature}; greywhale runs on {known} only."
 WRONG_BYTE = "the board holds {found} at address {address} instead of {wanted}; flash it again."

@@ -114,5 +114,6 @@ export const beyondAnyBoard = ({ address }: Filling<"address">): string => `data
 export const otherBoard = ({ meant, port, board }: Filling<"meant" | "port" | "board">): string => `this image is for ${meant}, but the board on ${port} is an ${board}; choose another file.`;
 export const noRoom = ({ end, board, space }: Filling<"end" | "board" | "space">): string => `the image reaches up to byte ${end}, but an ${board} has room for ${space}; choose another file.`;
 export const noBootloader = ({ bauds }: Filling<"bauds">): string => `no bootloader answers at ${bauds} baud; check that the board's reset works, or burn a bootloader with a programmer.`;
+export const silent = ({ doing, address }: Filling<"doing" | "address">): string => `the bootloader stopped answering while ${doing} at address ${address}; check the cable and try again.`;
 export const otherChip = ({ signature, known }: Filling<"signature" | "known">): string => `the chip has ${signature}; greywhale runs on ${known} only.`;
 export const wrongByte = ({ found, address, wanted }: Filling<"found" | "address" | "wanted">): string => `the board holds ${found} at address ${address} instead of ${wanted}; flash it again.`;

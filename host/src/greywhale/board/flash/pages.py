@@ -38,8 +38,8 @@ class Memory:
         for _ in range(ATTEMPTS):
             if self.line.write(address, content):
                 return
-            self._resume(address)
-        raise self._silent(address)
+            self._resume("writing", address)
+        raise self._silent("writing", address)
 
     def read(self, block: range) -> bytes:
         """A page at most."""
@@ -47,15 +47,15 @@ class Memory:
             found = self.line.read(block.start, len(block) + len(block) % 2)  # whole words
             if found is not None:
                 return found[: len(block)]
-            self._resume(block.start)
-        raise self._silent(block.start)
+            self._resume("reading", block.start)
+        raise self._silent("reading", block.start)
 
     def read_all(self, blocks: Sequence[range], what: str, report: Progress) -> Iterator[bytes]:
         for done, block in enumerate(blocks, start=1):
             yield self.read(block)
             report(what, done / len(blocks))
 
-    def _resume(self, address: int) -> None:
+    def _resume(self, doing: str, address: int) -> None:
         if self.line.enter(lost=True) or self._restart is None:
             return
         try:
@@ -63,12 +63,10 @@ class Memory:
         except PortLostError:
             raise
         except UserError:
-            raise self._silent(address) from None
+            raise self._silent(doing, address) from None
 
-    def _silent(self, address: int) -> UserError:
-        return UserError(
-            f"{self.port}: the bootloader stopped answering at address {address:#x}; check the cable and try again."
-        )
+    def _silent(self, doing: str, address: int) -> UserError:
+        return UserError(f"{self.port}: {sentences.SILENT.format(doing=doing, address=hex(address))}")
 
 
 def write_image(port: str, dialect: Dialect, image: Image, size: int, report: Progress) -> None:

@@ -1,6 +1,6 @@
 // Flashes a board: finds its bootloader and its chip, refuses what is for another, writes, and reads all of it back.
 
-import { noBootloader, otherChip, wrongByte } from "../../../files/rules";
+import { noBootloader, otherChip, silent, wrongByte } from "../../../files/rules";
 import { LinkError } from "../../../link/declared";
 import { upperFirst } from "../../../link/refusal";
 import type { NamedText } from "../../../parts/named_text";
@@ -133,6 +133,6 @@ async function verify(bootloader: Bootloader, { memory }: Image, { page }: Targe
   }
 }
 
-function stopped(what: string, at: number): string {
-  return `The bootloader stopped answering while ${what} at address ${hexNumber(at)}; check the cable and flash the board again.`;
+function stopped(doing: string, at: number): string {
+  return upperFirst(silent({ doing, address: hexNumber(at) }));
 }
