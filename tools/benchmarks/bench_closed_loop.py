@@ -1,4 +1,4 @@
-"""The closed loop of four joints at a 1 ms tick: greywhale alone and in batches, beside MuJoCo, Pinocchio and numba.
+"""The closed loop of four joints at a 1 ms tick: greywhale alone and in batches, beside MuJoCo and numba.
 
 Each peer that is installed (`make oracles` does it) runs in the same process or right after; times are the best of
 several repeats, for the machine may be busy. Figures are simulated seconds per second of one core unless they say
@@ -68,7 +68,7 @@ def run() -> list[Figure]:
         figures.append(Figure(f"closed loop, batch, {steps} steps a tick", batch[steps], "x real"))
     reach = max(batch.values())
     figures.append(at_least("closed loop, batch, fastest", reach, "x real", 40_000))
-    return figures + _mujoco(reach) + _pinocchio() + _numba(reach, plants, experiment)
+    return figures + _mujoco(reach) + _numba(reach, plants, experiment)
 
 
 def _mujoco(ours: float) -> list[Figure]:
@@ -101,38 +101,11 @@ def _mujoco(ours: float) -> list[Figure]:
         Figure("MuJoCo from C++, implicitfast, no dry friction", free, "x real"),
         Figure("MuJoCo from C++, implicitfast, dry friction", dry, "x real"),
         at_least("batch against MuJoCo without friction", ours / best, "x", 20),
-        *_mujoco_rollout(),
     ]
 
 
 def _without_friction(xml: str) -> str:
     return re.sub(r' frictionloss="[^"]*"', "", xml)
-
-
-def _mujoco_rollout() -> list[Figure]:
-    """Its own batch, open loop: Python cannot close the loop inside it."""
-    import mujoco  # type: ignore[import-not-found,import-untyped,unused-ignore]
-    from mujoco import rollout  # type: ignore[import-not-found,import-untyped,unused-ignore]
-
-    model = mujoco.MjModel.from_xml_string(_without_friction(mjcf(default_arm())))
-    model.opt.timestep = 1e-3
-    model.opt.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
-    count, steps = 32, 2000
-    size = mujoco.mj_stateSize(model, mujoco.mjtState.mjSTATE_FULLPHYSICS)
-    data = mujoco.MjData(model)
-    state = np.zeros((count, size))
-    control = np.random.default_rng(1).uniform(-2, 2, (count, steps, 4))
-    taken = _best(lambda: rollout.rollout(model, data, state, control), time.perf_counter, 3)
-    return [Figure("MuJoCo's batch rollout, open loop, no controllers", count * steps * 1e-3 / taken, "x real")]
-
-
-def _pinocchio() -> list[Figure]:
-    if importlib.util.find_spec("pinocchio") is None:
-        return []
-    from tools.benchmarks.peers.pinocchio_loop import ticks_per_second
-
-    rate = max(ticks_per_second(default_arm()) for _ in range(3))
-    return [Figure("Pinocchio from Python, arm alone", rate * 1e-3, "x real")]
 
 
 def _numba(ours: float, plants: np.ndarray, experiment: Experiment) -> list[Figure]:
