@@ -1,15 +1,10 @@
-"""The page of limits, and the header that declares them to compiled code, are made from the code."""
+"""The page of limits, and the header that tells them to compiled code, are made from the code."""
 
 from __future__ import annotations
 
-from tools.generate import limits, score_limits
+from tools.generate.limits import main
 
 
-def test_the_page_of_limits_is_current() -> None:
+def test_page_and_header_of_limits_are_current() -> None:
     """If not: `python -m tools.generate`."""
-    assert limits.main(["--check"]) == 0
-
-
-def test_the_header_of_limits_is_current() -> None:
-    """If not: `python -m tools.generate`."""
-    assert score_limits.main(["--check"]) == 0
+    assert main(["--check"]) == 0

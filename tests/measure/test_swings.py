@@ -1,4 +1,7 @@
-"""Unrest, rattle, chatter and ripple of motions made by hand. To follow a tremor or a quick move is none of them."""
+"""Unrest, rattle, chatter and ripple of motions made by hand. To follow a tremor or a quick move is none of them.
+
+Of simulated candidates tests/support/swings.py measures them; tests/tune/test_reference.py compares it with what runs.
+"""
 
 from __future__ import annotations
 
@@ -12,18 +15,15 @@ from greywhale.measure.swings import (
     FILTER_EVERY,
     RATTLE_BAND_HZ,
     SECTIONS,
-    chatter,
     chatter_of_record,
-    duty_swings,
     most_unrest,
-    rattle,
     rattle_of_record,
-    ripple,
     ripple_of_record,
     unrest,
 )
 from greywhale.protocol.firmware import TICK_S, pwm_steps
 from greywhale.protocol.schema import Board
+from tests.support.swings import chatter, duty_swings, rattle, ripple
 
 TIME_S = np.arange(6000) * 1e-3
 

@@ -1,4 +1,4 @@
-"""What a candidate costs, slowly in numpy, as docs/tune.md has it: the reference of host/native/score."""
+"""What a candidate costs, slowly in numpy as docs/tune.md has it: the reference of host/native/score."""
 
 from __future__ import annotations
 
@@ -6,60 +6,19 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import scipy
 
-from greywhale import _native
 from greywhale.base.types import Flags, Floats, Integers
 from greywhale.loop import Result
-from greywhale.measure.swings import (
-    BLOCK,
-    BLOCK_S,
-    CHATTER_SHARE,
-    FILTER_EVERY,
-    REACT_S,
-    RIPPLE_S,
-    SECTIONS,
-    Duties,
-    Hunting,
-    Singles,
-    count_swings,
-)
-from greywhale.protocol.firmware import JOINTS, TICK_S, pwm_steps
+from greywhale.measure.swings import Hunting, count_swings
+from greywhale.protocol.firmware import JOINTS, TICK_S
 from greywhale.protocol.schema import Board
 from greywhale.tune.judge.margins import AT_REST, TEETH
 from greywhale.tune.judge.standard import Counts
 from greywhale.tune.limits import TUNING_LIMITS
 from greywhale.tune.search.objective import ErrorScale, FollowingErrors
+from tests.support.swings import chatter, duty_swings, rattle, ripple
 
 COST, SWINGS, MARGINS, CHOICE = (getattr(TUNING_LIMITS, name) for name in ("cost", "swings", "margins", "choice"))
-
-
-# --- swings -----------------------------------------------------------------------------------------------------------
-
-
-def rattle(angles: Singles, leader: Floats, wait_s: float) -> Floats:
-    followed = np.asarray(_native.band_power(angles, FILTER_EVERY, BLOCK, SECTIONS))
-    led = np.asarray(_native.band_power(leader[None], FILTER_EVERY, BLOCK, SECTIONS))
-    back = round(REACT_S / BLOCK_S)
-    # The filter is centred; shifted, it looks back only.
-    allowed = scipy.ndimage.maximum_filter1d(led, back + 1, axis=1, origin=back // 2)
-    excess = np.maximum(followed - allowed, 0.0)[:, round(wait_s / BLOCK_S) :]
-    return np.asarray(np.sqrt(excess.mean(axis=1)))
-
-
-def duty_swings(duties: Duties, rows: tuple[int, int], board: Board) -> Integers:
-    steps = pwm_steps(board)
-    counted = {top: count_swings(duties, *rows, CHATTER_SHARE * top)[0] for top in set(steps)}
-    return np.stack([counted[top][:, joint] for joint, top in enumerate(steps)], axis=1)
-
-
-def ripple(duties: Duties, rows: tuple[int, int], board: Board) -> Floats:
-    """As a share of the supply."""
-    size = round(RIPPLE_S / TICK_S)
-    path = duties[:, rows[0] : rows[1]].astype(np.float64)
-    means = np.lib.stride_tricks.sliding_window_view(path, size, axis=1).mean(axis=-1)
-    less = path[:, size // 2 : size // 2 + means.shape[1]] - means
-    return np.asarray(np.sqrt(np.mean(less**2, axis=1)) / np.array(pwm_steps(board)))
 
 
 # --- following --------------------------------------------------------------------------------------------------------
@@ -77,10 +36,9 @@ def follow(result: Result, leader: Floats, total_weight: float, wait_s: float, b
     """Error, volts, rattling and chatter (n, 4) of one motion."""
     error = error_of(result.itae / total_weight, result.mse)
     error[result.diverged] = COST.lost_cost
-    shaken = rattle(result.angles, leader, wait_s)
+    shaken = rattle(result.angles, leader, 1, wait_s)
     shaken[result.diverged] = COST.lost_cost
-    rows = len(leader)
-    return error, result.itau / total_weight, shaken, duty_swings(result.duties, (0, rows), board) / (rows * TICK_S)
+    return error, result.itau / total_weight, shaken, chatter(result.duties, 1, board)
 
 
 def relative_costs(found: FollowingErrors, scale: ErrorScale, supply_v: float) -> Floats:
@@ -118,17 +76,17 @@ class Unrest:
 
 def unrest(result: Result, rests: Sequence[tuple[int, int]], cycle: Hunting, supply_v: float, board: Board) -> Unrest:
     reversals = np.zeros((len(result.mse), JOINTS), dtype=np.int32)
-    travel, chatter, loud = (np.zeros(reversals.shape) for _ in range(3))
+    travel, beats, loud = (np.zeros(reversals.shape) for _ in range(3))
     for rows in rests:
         seconds = (rows[1] - rows[0]) * TICK_S
         turned, moved = count_swings(result.angles, *rows, cycle.band_rad)
         reversals = np.maximum(reversals, turned)
         travel = np.maximum(travel, np.where(turned >= cycle.turns, moved / seconds, 0.0))
-        chatter = np.maximum(chatter, duty_swings(result.duties, rows, board) / seconds)
+        beats = np.maximum(beats, duty_swings(result.duties, rows, board) / seconds)
         loud = np.maximum(loud, supply_v * ripple(result.duties, rows, board))
     lost = np.repeat(result.diverged[:, None], JOINTS, axis=1)
-    fails = (reversals >= cycle.turns) | (chatter > SWINGS.chatter_at_rest_hz) | lost
-    return Unrest(reversals, travel, chatter, loud, fails, lost)
+    fails = (reversals >= cycle.turns) | (beats > SWINGS.chatter_at_rest_hz) | lost
+    return Unrest(reversals, travel, beats, loud, fails, lost)
 
 
 def penalty(found: Mapping[str, Unrest], quiet_v: Floats, strict: bool) -> Floats:

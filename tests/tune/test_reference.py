@@ -11,10 +11,9 @@ from greywhale import _native
 from greywhale.base.limits import numbers_in
 from greywhale.base.types import Floats
 from greywhale.loop import Result
-from greywhale.measure.swings import MEASURE, Hunting, first_block
-from greywhale.protocol.firmware import TICK_S
+from greywhale.measure.swings import FOR_SIMULATIONS, Hunting, first_block
+from greywhale.protocol.firmware import TICK_S, pwm_steps
 from greywhale.protocol.schema import Board
-from greywhale.protocol.table import ParameterTable
 from greywhale.tune.judge import margins
 from greywhale.tune.judge.margins import SCENARIOS, TEETH
 from greywhale.tune.judge.standard import Standard
@@ -53,13 +52,13 @@ def test_following_is_measured_as_defined(random: np.random.Generator, ticks: in
     """Also in motions that are shorter than a joint takes to answer."""
     result = traces(random, ticks)
     leader = np.cumsum(1e-3 * random.normal(size=(ticks, 4)), axis=0)
-    table = ParameterTable.defaults(board)
     found = _native.follow(
-        outcome=objective.outcome_of(result, table),
+        result=result,
+        pwm_top=pwm_steps(board),
         leader=leader,
         total_weight=1.7,
         first_block=first_block(WAIT_S),
-        measure=MEASURE,
+        measure=FOR_SIMULATIONS,
         cost=numbers_in(TUNING_LIMITS.cost),
     )
     wanted = reference.follow(result, leader, 1.7, WAIT_S, board)
@@ -71,9 +70,11 @@ def test_costs_are_as_defined(random: np.random.Generator) -> None:
     most = np.array([0.2, 9.0, 0.01, 150.0])[:, None, None, None, None]
     found = FollowingErrors(*random.uniform(0.0, most, (4, 6, 9, 3, 4)))
     before, floor, rattle = random.uniform(0.0, 0.1, (3, 9, 3, 4))
-    room = objective.room_of(before, floor)
+    cost = numbers_in(TUNING_LIMITS.cost)
+    room = np.asarray(_native.rooms_of(before=before, floor=floor, cost=cost))
     equal(room, reference.room_of(before, floor))
-    equal(objective.error_of(before[0], floor[0]), reference.error_of(before[0], floor[0]))
+    error = _native.errors_of(weighted=before[0], square=floor[0], cost=cost)
+    equal(error, reference.error_of(before[0], floor[0]))
     scale = ErrorScale(floor, room, 0.1 * rattle)
     relative = objective.relative_costs(found, scale, SUPPLY_V)
     equal(relative, reference.relative_costs(found, scale, SUPPLY_V))
@@ -84,19 +85,20 @@ def test_costs_are_as_defined(random: np.random.Generator) -> None:
 @pytest.mark.parametrize("board", [Board.MEGA2560, Board.NANO328])
 def test_unrest_is_measured_priced_and_judged_as_defined(random: np.random.Generator, board: Board) -> None:
     """In every scenario three candidates on two plants."""
-    table, cycle = ParameterTable.defaults(board), Hunting(0.005, 3)
+    cycle = Hunting(0.005, 3)
     compiled, wanted = {}, {}
     for name in SCENARIOS[:-1]:
         result = traces(random, 1000, 6)
         numbers = np.asarray(
             _native.unrest(
-                outcome=objective.outcome_of(result, table),
+                result=result,
+                pwm_top=pwm_steps(board),
                 rests=RESTS,
                 band_rad=cycle.band_rad,
                 turns=cycle.turns,
                 supply_v=SUPPLY_V,
                 swings=numbers_in(TUNING_LIMITS.swings),
-                measure=MEASURE,
+                measure=FOR_SIMULATIONS,
             )
         )
         compiled[name] = margins.Unrest(numbers.reshape(3, 2, 4, -1))

@@ -145,8 +145,8 @@ def _rests(model: Model, rest_s: float, noise: int, beyond: float, cycle: swings
 
 def _limits(supply_v: float) -> list[float]:
     """In the order of Limits in host/native/web/score.cpp."""
-    groups = (LIMITS.cost, LIMITS.swings, LIMITS.margins, LIMITS.choice)
-    return [float(number) for number in (*swings.MEASURE, *np.concatenate(list(map(numbers_in, groups))), supply_v)]
+    groups = [numbers_in(group) for group in (LIMITS.cost, LIMITS.swings, LIMITS.margins, LIMITS.choice)]
+    return [*np.concatenate([swings.FOR_SIMULATIONS, *groups]).tolist(), supply_v]
 
 
 def _search(model: Model) -> dict[str, Any]:

@@ -183,24 +183,6 @@ nb::tuple swings(const In<T, nb::shape<-1, -1, kJoints>>& traces, std::size_t fi
   return nb::make_tuple(reversals.numpy(), travel.numpy());
 }
 
-nb::object ripple(const In<std::int16_t, nb::shape<-1, -1, kJoints>>& traces, std::size_t first, std::size_t last,
-                  std::size_t window) {
-  if (first > last || last > traces.shape(1) || window % 2 == 0 || window > last - first)
-    throw std::invalid_argument("the rows must lie within the traces, and an odd window within the rows.");
-  const std::size_t count = traces.shape(0);
-  Array<double> squares({count, kJoints});
-  {
-    const nb::gil_scoped_release free;
-    greywhale::share_out(count, 0, [&](std::size_t n) {
-      for (std::size_t i = 0; i < kJoints; ++i) {
-        const std::int16_t* from = traces.data() + (n * traces.shape(1) + first) * kJoints + i;
-        squares.data()[n * kJoints + i] = loop::ripple_of(from, last - first, kJoints, window);
-      }
-    });
-  }
-  return squares.numpy();
-}
-
 // What each plant's potentiometers show of traces of its angles.
 nb::object shown_angles(const In<float, nb::shape<-1, -1, kJoints>>& angles, const PlantTable& plants, double row_s) {
   const std::size_t count = angles.shape(0), rows = angles.shape(1);
@@ -269,8 +251,6 @@ void bind_closed_loop(nb::module_& m) {
         "Number (int32) and travel (float64) of the swings of traces, n x rows x 4, by more than the band: both n "
         "x 4.");
   m.def("swings", &swings<std::int16_t>, "traces"_a.noconvert(), "first"_a, "last"_a, "band"_a);
-  m.def("ripple", &ripple, "traces"_a.noconvert(), "first"_a, "last"_a, "window"_a,
-        "Mean square (n x 4) of traces, n x rows x 4, less their own mean over `window` rows.");
   m.def("shown_angles", &shown_angles, nb::kw_only(), "angles"_a.noconvert(), "plants"_a.noconvert(), "row_s"_a,
         "Readings (float64) of the plants' potentiometers for joint angles, n x rows x 4, a row every row_s.");
   m.def("plant_row", &plant_row, "parameters"_a, "An arm as one row of numbers.");

@@ -49,8 +49,6 @@ using Measure = Numbers<score::SwingMeasure>;
 using Cost = Numbers<score::CostLimits>;
 using Bounds = Numbers<score::SwingBounds>;
 using Quiet = std::array<double, kJoints>;
-using Singles = In<float, nb::shape<-1, -1, kJoints>>;
-using Duties = In<std::int16_t, nb::shape<-1, -1, kJoints>>;
 using Each = In<double, nb::shape<-1, kJoints>>;
 using Joints = std::array<int, kJoints>;
 using ErrorRows = In<double, nb::shape<-1, -1, -1, kJoints, kNumbers<score::Errors>>>;
@@ -62,59 +60,26 @@ void require(bool sound, const char* otherwise) {
   if (!sound) throw std::invalid_argument(otherwise);
 }
 
-nb::object rattle(const Singles& angles, const Each& leader, std::size_t stride, std::size_t first_block,
-                  const Measure& measure) {
-  const score::SwingMeasure& how = struct_of<score::SwingMeasure>(measure);
-  const std::size_t rows = angles.shape(1), every = static_cast<std::size_t>(how.filter_ticks);
-  require(stride > 0 && (rows + stride - 1) / stride == (leader.shape(0) + every - 1) / every,
-          "angles and leader differ in length.");
-  const score::Rattle beyond(leader.data(), leader.shape(0), first_block, how);
-  Array<double> found({angles.shape(0), kJoints});
-  greywhale::share_out(angles.shape(0), 0, [&](std::size_t n) {
-    const auto rms = beyond.of(angles.data() + n * rows * kJoints, stride);
-    std::copy(rms.begin(), rms.end(), found.data() + n * kJoints);
-  });
-  return found.numpy();
-}
-
-nb::object duty_swings(const Duties& duties, std::size_t first, std::size_t last, const Joints& pwm_top, double share) {
-  require(first <= last && last <= duties.shape(1), "the rows must lie within the traces, the first before the last.");
-  Array<std::int32_t> found({duties.shape(0), kJoints});
-  for (std::size_t n = 0; n < duties.shape(0); ++n) {
-    const std::int16_t* from = duties.data() + (n * duties.shape(1) + first) * kJoints;
-    const auto turns = score::duty_swings(from, last - first, pwm_top, share);
-    std::copy(turns.begin(), turns.end(), found.data() + n * kJoints);
-  }
-  return found.numpy();
-}
-
-// What the closed loop gave, with a trace of every tick.
-struct Outcome {
-  Each mse, itae, itau;
-  In<bool, nb::shape<-1>> diverged;
-  Singles angles;
-  Duties duties;
-  Joints pwm_top;
-
-  score::Run run() const {
-    return {angles.shape(0), angles.shape(1), mse.data(),    itae.data(), itau.data(),
-            diverged.data(), angles.data(),   duties.data(), pwm_top};
-  }
-};
-
-void make_outcome(Outcome* self, const Each& mse, const Each& itae, const Each& itau,
-                  const In<bool, nb::shape<-1>>& diverged, const Singles& angles, const Duties& duties,
-                  const Joints& pwm_top) {
+// A greywhale.loop.Result with a row a tick, which keeps the arrays.
+score::Run run_of(const nb::object& result, const Joints& pwm_top) {
+  const auto field = [&result](const char* name, auto kind) {
+    return nb::cast<decltype(kind)>(result.attr(name), false);
+  };
+  const auto mse = field("mse", Each{}), itae = field("itae", Each{}), itau = field("itau", Each{});
+  const auto diverged = field("diverged", In<bool, nb::shape<-1>>{});
+  const auto angles = field("angles", In<float, nb::shape<-1, -1, kJoints>>{});
+  const auto duties = field("duties", In<std::int16_t, nb::shape<-1, -1, kJoints>>{});
   const std::size_t count = angles.shape(0);
   require(mse.shape(0) == count && itae.shape(0) == count && itau.shape(0) == count && diverged.shape(0) == count &&
               duties.shape(0) == count && duties.shape(1) == angles.shape(1),
           "measures and traces differ in number or length.");
-  new (self) Outcome{mse, itae, itau, diverged, angles, duties, pwm_top};
+  return {count,           angles.shape(1), mse.data(),    itae.data(), itau.data(),
+          diverged.data(), angles.data(),   duties.data(), pwm_top};
 }
 
-nb::object follow(const Outcome& outcome, const Each& leader, double total_weight, std::size_t first_block,
-                  const Measure& measure, const Cost& cost) {
-  const score::Run run = outcome.run();
+nb::object follow(const nb::object& result, const Joints& pwm_top, const Each& leader, double total_weight,
+                  std::size_t first_block, const Measure& measure, const Cost& cost) {
+  const score::Run run = run_of(result, pwm_top);
   require(leader.shape(0) == run.ticks, "angles and leader differ in length.");
   const score::SwingMeasure& how = struct_of<score::SwingMeasure>(measure);
   const score::Rattle beyond(leader.data(), run.ticks, first_block, how);
@@ -169,9 +134,9 @@ nb::object total_costs(const CostRows& relative, const std::vector<double>& impo
   return costs.numpy();
 }
 
-nb::object unrest(const Outcome& outcome, const std::vector<std::array<std::size_t, 2>>& rests, double band_rad,
-                  double turns, double supply_v, const Bounds& swings, const Measure& measure) {
-  const score::Run run = outcome.run();
+nb::object unrest(const nb::object& result, const Joints& pwm_top, const std::vector<std::array<std::size_t, 2>>& rests,
+                  double band_rad, double turns, double supply_v, const Bounds& swings, const Measure& measure) {
+  const score::Run run = run_of(result, pwm_top);
   const score::SwingMeasure& how = struct_of<score::SwingMeasure>(measure);
   for (const auto& [first, last] : rests)
     require(first <= last && last <= run.ticks && static_cast<double>(last - first) >= how.ripple_ticks,
@@ -220,15 +185,8 @@ nb::object falls_short(const std::vector<int>& scenarios, const In<double, nb::s
 }  // namespace
 
 void bind_score(nb::module_& m) {
-  nb::class_<Outcome>(m, "Outcome", "What candidates did, with a trace of every tick, to be scored.")
-      .def("__init__", &make_outcome, nb::kw_only(), "mse"_a.noconvert(), "itae"_a.noconvert(), "itau"_a.noconvert(),
-           "diverged"_a.noconvert(), "angles"_a.noconvert(), "duties"_a.noconvert(), "pwm_top"_a);
-  m.def("rattle", &rattle, nb::kw_only(), "angles"_a.noconvert(), "leader"_a, "stride"_a, "first_block"_a, "measure"_a,
-        "Rattle (n x 4) in rad rms of angles, n x rows x 4, of which every `stride`-th row is filtered.");
-  m.def("duty_swings", &duty_swings, nb::kw_only(), "duties"_a.noconvert(), "first"_a, "last"_a, "pwm_top"_a, "share"_a,
-        "Swings (int32, n x 4) of duties, n x rows x 4, by more than a share of each joint's full duty.");
-  m.def("follow", &follow, nb::kw_only(), "outcome"_a, "leader"_a.noconvert(), "total_weight"_a, "first_block"_a,
-        "measure"_a, "cost"_a, "Error, volts, rattle and chatter: n x 4 x 4.");
+  m.def("follow", &follow, nb::kw_only(), "result"_a, "pwm_top"_a, "leader"_a.noconvert(), "total_weight"_a,
+        "first_block"_a, "measure"_a, "cost"_a, "Error, volts, rattle and chatter: n x 4 x 4.");
   m.def("errors_of", &errors_of, nb::kw_only(), "weighted"_a, "square"_a, "cost"_a,
         "Errors (n x 4) in rad, of weighted means of |e| and means of e^2.");
   m.def("rooms_of", &rooms_of, nb::kw_only(), "before"_a, "floor"_a, "cost"_a,
@@ -237,8 +195,8 @@ void bind_score(nb::module_& m) {
         "Costs n x plants x classes x 4, of errors (... x 4) beside a scale of floor, room and rattle.");
   m.def("total_costs", &total_costs, nb::kw_only(), "relative"_a, "importances"_a, "cost"_a,
         "Costs n x 4 over all plants and classes.");
-  m.def("unrest", &unrest, nb::kw_only(), "outcome"_a, "rests"_a, "band_rad"_a, "turns"_a, "supply_v"_a, "swings"_a,
-        "measure"_a, "Reversals, travel, chatter, ripple, fails and lost in the worst rest: n x 4 x 6.");
+  m.def("unrest", &unrest, nb::kw_only(), "result"_a, "pwm_top"_a, "rests"_a, "band_rad"_a, "turns"_a, "supply_v"_a,
+        "swings"_a, "measure"_a, "Reversals, travel, chatter, ripple, fails and lost in the worst rest: n x 4 x 6.");
   m.def("unrest_prices", &unrest_prices, nb::kw_only(), "scenarios"_a, "unrest"_a, "quiet_v"_a, "strict"_a, "margins"_a,
         "swings"_a, "Prices n x 4 of the unrest in some scenarios, scenarios x n x plants x 4 x 6.");
   m.def("falls_short", &falls_short, nb::kw_only(), "scenarios"_a, "failing"_a, "ripple_v"_a, "may_fail"_a, "quiet_v"_a,

@@ -20,10 +20,9 @@ std::vector<Errors> follow(const Run& run, const Rattle& rattle, double total_we
                            const CostLimits& limits) {
   std::vector<Errors> found(run.count * kJoints);
   const double seconds = static_cast<double>(run.ticks) * loop::kTick;
-  const auto stride = static_cast<std::size_t>(measure.filter_ticks);
   share_out(run.count, 0, [&](std::size_t n) {
     const std::size_t from = n * run.ticks * kJoints;
-    const auto shaken = rattle.of(run.angles + from, stride);
+    const auto shaken = rattle.of(run.angles + from);
     const auto swings = duty_swings(run.duties + from, run.ticks, run.pwm_top, measure.duty_share);
     for (std::size_t i = 0; i < kJoints; ++i) {
       const std::size_t at = n * kJoints + i;

@@ -12,10 +12,11 @@ namespace {
 loop::Section<kJoints> section(const double (&n)[6]) { return {n[0], n[1], n[2], n[4], n[5]}; }
 
 template <class T>
-std::vector<double> power_of(const T* angles, std::size_t blocks, std::size_t stride, const SwingMeasure& measure) {
+std::vector<double> power_of(const T* angles, std::size_t blocks, const SwingMeasure& measure) {
   std::vector<double> power(blocks * kJoints);
-  loop::band_power<kJoints>(angles, stride, blocks, static_cast<std::size_t>(measure.block), section(measure.low),
-                            section(measure.high), power.data());
+  loop::band_power<kJoints>(angles, static_cast<std::size_t>(measure.filter_ticks), blocks,
+                            static_cast<std::size_t>(measure.block), section(measure.low), section(measure.high),
+                            power.data());
   return power;
 }
 
@@ -32,7 +33,7 @@ Rattle::Rattle(const double* leader, std::size_t ticks, std::size_t first_block,
   const auto stride = static_cast<std::size_t>(measure.filter_ticks);
   const auto back = static_cast<std::size_t>(measure.react_blocks);
   const std::size_t blocks = (ticks + stride - 1) / stride / static_cast<std::size_t>(measure.block);
-  const std::vector<double> led = power_of(leader, blocks, stride, measure);
+  const std::vector<double> led = power_of(leader, blocks, measure);
   allowed_ = led;
   for (std::size_t block = 0; block < blocks; ++block) {
     for (std::size_t n = 1; n <= back; ++n) {
@@ -43,12 +44,12 @@ Rattle::Rattle(const double* leader, std::size_t ticks, std::size_t first_block,
   }
 }
 
-std::array<double, kJoints> Rattle::of(const float* angles, std::size_t stride) const {
+std::array<double, kJoints> Rattle::of(const float* angles) const {
   const std::size_t blocks = allowed_.size() / kJoints;
   std::array<double, kJoints> rms;
   rms.fill(std::numeric_limits<double>::quiet_NaN());
   if (blocks <= first_block_) return rms;
-  const std::vector<double> power = power_of(angles, blocks, stride, measure_);
+  const std::vector<double> power = power_of(angles, blocks, measure_);
   for (std::size_t i = 0; i < kJoints; ++i) {
     double excess = 0.0;
     for (std::size_t at = first_block_ * kJoints + i; at < power.size(); at += kJoints)

@@ -27,8 +27,8 @@ class Rattle {
   // `leader` has a row a tick. What is before `first_block` does not count.
   Rattle(const double* leader, std::size_t ticks, std::size_t first_block, const SwingMeasure& measure);
 
-  // Of angles of which every `stride`-th row is filtered, rad rms; NaN where no block counts.
-  std::array<double, kJoints> of(const float* angles, std::size_t stride) const;
+  // Of angles with a row a tick, rad rms; NaN where no block counts.
+  std::array<double, kJoints> of(const float* angles) const;
 
  private:
   SwingMeasure measure_;

@@ -97,8 +97,9 @@ Unrests unrests_of(const Stops& at, const std::vector<std::int32_t>& table, bool
 
 extern "C" {
 
-// Given: all limits. Answers how many they are.
+// Begins anew. Given: all limits. Answers how many they are.
 EXPORT(limit) unsigned exported_limit() {
+  drills.clear(), importances.clear(), stops.clear();
   if (given.size() == kLimits) std::copy(given.begin(), given.end(), reinterpret_cast<double*>(&limits));
   return kLimits;
 }

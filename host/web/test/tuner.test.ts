@@ -36,6 +36,12 @@ test("the same joints fall short of what held before", () => {
   assert.ok(golden.short.some(({ length }) => length) && golden.short.some(({ length }) => !length));
 });
 
+test("another judge of the same module begins anew, and refuses limits of another version", () => {
+  const costs = judge.costs(golden.judged, true);
+  assert.deepEqual(new Judge(module, data, golden.before).costs(golden.judged, true), costs);
+  assert.throws(() => new Judge(module, { ...data, limits: data.limits.slice(1) }, golden.before), /two versions/);
+});
+
 test("a search that is ended at once leaves the controllers as they are, and shows them twice", () => {
   const tuning = new Tuning(module, data, golden.before);
   tuning.run().next();

@@ -1,5 +1,5 @@
-"""Swings that nobody asked for: five words, and how each is measured. All of greywhale takes them from here. From where
-on each counts is in `limits.py`.
+"""Swings that nobody asked for: five words, and how each is measured. All of greywhale takes them from here; those of
+simulated candidates are computed by host/native/score. From where on each counts is in `limits.py`.
 
 - Hunting: while its leader rests, a joint turns back again and again, each time by more than a band (a gear that hunts
   in its backlash, an integrator that breaks loose, a loop without phase margin). `count_swings` counts the turns.
@@ -24,8 +24,7 @@ import scipy  # loads a part of itself when it is first used
 from greywhale import _native
 from greywhale.base.types import Floats, Integers
 from greywhale.measure.runs import resting, stretches
-from greywhale.protocol.firmware import JOINTS, TICK_S, pwm_steps
-from greywhale.protocol.schema import Board
+from greywhale.protocol.firmware import JOINTS, TICK_S
 
 Singles = npt.NDArray[np.float32]
 Duties = npt.NDArray[np.int16]
@@ -127,35 +126,6 @@ SECTIONS = np.array(
 BLOCK = round(BLOCK_S / (FILTER_EVERY * TICK_S))
 
 
-# In the order of SwingMeasure in host/native/score/swing_measure.h.
-MEASURE: Floats = np.array(
-    [
-        *SECTIONS.ravel(),
-        *(FILTER_EVERY, BLOCK, round(REACT_S / BLOCK_S)),
-        *(CHATTER_SHARE, round(RIPPLE_S / TICK_S)),
-    ]
-)
-
-
-def rattle(angles: Singles, leader: Floats, every: int, wait_s: float) -> Floats:
-    """The rattle (n, 4) in rad, rms over the motion, of simulated followers (n, rows, 4).
-
-    The power is compared block by block with the highest that the leader had in the last REACT_S. The angles have a row
-    every `every` ticks, a divisor of FILTER_EVERY. `leader` (ticks, 4) has one every tick. What happens in the first
-    `wait_s`, before the leader moves, is left out.
-    """
-    if FILTER_EVERY % every:
-        raise ValueError(f"there is a row every {every} ticks, but {FILTER_EVERY} must be a multiple of that")
-    found: Floats = _native.rattle(  # type: ignore[assignment] # the stub says object
-        angles=angles,
-        leader=leader,
-        stride=FILTER_EVERY // every,
-        first_block=first_block(wait_s),
-        measure=MEASURE,
-    )
-    return found
-
-
 def first_block(wait_s: float) -> int:
     """The first block of rattle after a wait."""
     return round(wait_s / BLOCK_S)
@@ -181,34 +151,12 @@ def _rattle_band() -> Floats:
 # --- chatter ----------------------------------------------------------------------------------------------------------
 
 
-def duty_swings(duties: Duties, rows: tuple[int, int], board: Board) -> Integers:
-    """For every record and joint (n, 4): swings by more than CHATTER_SHARE of that joint's full PWM."""
-    found: Integers = _native.duty_swings(  # type: ignore[assignment] # the stub says object
-        duties=duties, first=rows[0], last=rows[1], pwm_top=pwm_steps(board), share=CHATTER_SHARE
-    )
-    return found
-
-
-def chatter(duties: Duties, every: int, board: Board) -> Floats:
-    """Duty swings a second (n, 4) over whole records with a row every `every` ticks."""
-    rows = duties.shape[1]
-    found: Floats = duty_swings(duties, (0, rows), board) / (rows * every * TICK_S)
-    return found
-
-
 def chatter_of_record(voltage: Floats, supply_v: float) -> Floats:
     """Large swings of the voltage (rows, 4) a second: (4,)."""
     return turns_of(voltage, CHATTER_SHARE * supply_v) / (len(voltage) * TICK_S)
 
 
 # --- ripple -----------------------------------------------------------------------------------------------------------
-
-
-def ripple(duties: Duties, rows: tuple[int, int], board: Board) -> Floats:
-    """The ripple of every record and joint (n, 4), as a share of the supply; a row a tick."""
-    squares = np.asarray(_native.ripple(duties, *rows, _ticks(RIPPLE_S)), dtype=np.float64)
-    found: Floats = np.sqrt(squares) / np.array(pwm_steps(board))
-    return found
 
 
 def ripple_of_record(voltage: Floats) -> Floats:
@@ -226,3 +174,11 @@ def ripple_at_rest(leader: Floats, voltage: Floats, still_rad: float = STILL_RAD
 
 def _ticks(seconds: float) -> int:
     return round(seconds / TICK_S)
+
+
+# --- simulated candidates ---------------------------------------------------------------------------------------------
+
+# In the order of SwingMeasure in host/native/score/swing_measure.h, which measures rattle, chatter and ripple of these.
+FOR_SIMULATIONS: Floats = np.array(
+    [*SECTIONS.ravel(), FILTER_EVERY, BLOCK, round(REACT_S / BLOCK_S), CHATTER_SHARE, _ticks(RIPPLE_S)]
+)

@@ -12,12 +12,14 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from greywhale import _native
+from greywhale.base.limits import numbers_in
 from greywhale.base.types import Controllers, Floats
 from greywhale.protocol.firmware import TICK_S
 from greywhale.protocol.table import ParameterTable
 from greywhale.tune.judge.floor import follow_ideally
 from greywhale.tune.limits import TUNING_LIMITS, TuningLimits
-from greywhale.tune.search.objective import ErrorScale, error_of, follow, room_of
+from greywhale.tune.search.objective import ErrorScale, follow
 from greywhale.tune.search.training import WAIT_S, TrainingMotion
 
 # The mean age of a tick's conversions when the tick uses them.
@@ -32,10 +34,11 @@ def scale_of(
     judging: TuningLimits = TUNING_LIMITS,
 ) -> ErrorScale:
     """Floors, and errors and rattling of the controllers from before (4, 13), on every plant."""
-    late, cost = lateness_s(drills[0].experiment.table), judging.cost
+    late = lateness_s(drills[0].experiment.table)
     floor = np.stack([_least_errors(drill, plants, late, threads, judging) for drill in drills], axis=1)
-    found = follow(drills, plants, before[None], threads=threads, limits=cost)
-    return ErrorScale(floor, room_of(found.error[0], floor, cost), found.rattle[0])
+    found = follow(drills, plants, before[None], threads=threads, limits=judging.cost)
+    room = _native.rooms_of(before=found.error[0], floor=floor, cost=numbers_in(judging.cost))
+    return ErrorScale(floor, np.asarray(room), found.rattle[0])
 
 
 def lateness_s(table: ParameterTable) -> float:
@@ -51,4 +54,5 @@ def _least_errors(drill: TrainingMotion, plants: Floats, late_s: float, threads:
     )
     distance = np.abs(leader - angles)
     weight = drill.experiment.weight_s[:, None]
-    return error_of((weight * distance).sum(axis=1) / weight.sum(), np.square(distance).mean(axis=1), judging.cost)
+    mean, square = (weight * distance).sum(axis=1) / weight.sum(), np.square(distance).mean(axis=1)
+    return np.asarray(_native.errors_of(weighted=mean, square=square, cost=numbers_in(judging.cost)))

@@ -8,7 +8,7 @@ export class Judge {
   private readonly refining: number;
   private readonly judging: number;
 
-  /** Judges by what the controllers from before do. */
+  /** Judges by what the controllers from before do, and is the module's only judge from now on. */
   constructor(private readonly module: TunerModule, private readonly data: TunerData, before: Controllers) {
     const { limits, drills, rests } = data;
     if (module.tell("limit", limits) !== limits.length) throw new Error("The tuner and its data are of two versions; load the page again.");

@@ -25,11 +25,11 @@ from greywhale.base.types import Controllers, Flags, Floats, Integers
 from greywhale.files.trajectory import Trajectory
 from greywhale.loop import Experiment, Timing
 from greywhale.loop.leader_motions import minimum_jerk
-from greywhale.measure.swings import MEASURE
-from greywhale.protocol.firmware import JOINTS
+from greywhale.measure.swings import FOR_SIMULATIONS
+from greywhale.protocol.firmware import JOINTS, pwm_steps
 from greywhale.protocol.table import ParameterTable
 from greywhale.tune.limits import TUNING_LIMITS, MarginLimits, TuningLimits
-from greywhale.tune.search.objective import follow, outcome_of, pair_with_plants
+from greywhale.tune.search.objective import follow, pair_with_plants
 from greywhale.tune.search.training import RATE_HZ, centre, reach, training_motions
 
 WAIT_S = 0.2  # before a motion begins
@@ -190,13 +190,14 @@ class Margins:
         laws, arms = pair_with_plants(controllers, plants)
         run = experiment.run_exact if exact else experiment.run
         found = _native.unrest(
-            outcome=outcome_of(run(laws, arms, every=1, threads=self._threads), self._table),
+            result=run(laws, arms, every=1, threads=self._threads),
+            pwm_top=pwm_steps(self._table.board),
             rests=self._rests,
             band_rad=self._cycle.band_rad,
             turns=self._cycle.turns,
             supply_v=self._table.supply_v,
             swings=numbers_in(self._judging.swings),
-            measure=MEASURE,
+            measure=FOR_SIMULATIONS,
         )
         return Unrest(np.asarray(found).reshape(len(controllers), len(plants), JOINTS, -1))
 

@@ -33,11 +33,9 @@ import numpy as np
 from greywhale import _native
 from greywhale.base.limits import numbers_in
 from greywhale.base.types import Controllers, Floats
-from greywhale.loop import Result
 from greywhale.measure.limits import SWING_BOUNDS, SwingBounds
-from greywhale.measure.swings import MEASURE, first_block
+from greywhale.measure.swings import FOR_SIMULATIONS, first_block
 from greywhale.protocol.firmware import JOINTS, pwm_steps
-from greywhale.protocol.table import ParameterTable
 from greywhale.tune.limits import TUNING_LIMITS, CostLimits
 from greywhale.tune.search.training import WAIT_S, TrainingMotion
 
@@ -47,16 +45,6 @@ def pair_with_plants(controllers: Controllers, plants: Floats) -> tuple[Controll
     laws = np.repeat(controllers, len(plants), axis=0)
     arms = np.tile(plants, (len(controllers), 1))
     return np.ascontiguousarray(laws), np.ascontiguousarray(arms)
-
-
-def error_of(weighted: Floats, square: Floats, limits: CostLimits = TUNING_LIMITS.cost) -> Floats:
-    """The error (n, 4) in rad, of the weighted mean of |e| and the mean of e^2."""
-    return np.asarray(_native.errors_of(weighted=weighted, square=square, cost=numbers_in(limits)))
-
-
-def room_of(error_before: Floats, floor: Floats, limits: CostLimits = TUNING_LIMITS.cost) -> Floats:
-    """The way from the floor to the error before, or the least that is no mere noise: (plants, classes, 4) in rad."""
-    return np.asarray(_native.rooms_of(before=error_before, floor=floor, cost=numbers_in(limits)))
 
 
 @dataclass(frozen=True)
@@ -154,24 +142,12 @@ def _follow(
     """Error, volts, rattling and chatter (rows, 4, 4) of one motion."""
     run = drill.experiment.run_exact if exact else drill.experiment.run
     found = _native.follow(
-        outcome=outcome_of(run(laws, arms, every=1, threads=threads), drill.experiment.table),
+        result=run(laws, arms, every=1, threads=threads),
+        pwm_top=pwm_steps(drill.experiment.table.board),
         leader=drill.experiment.leader,
         total_weight=drill.total_weight,
         first_block=first_block(WAIT_S),
-        measure=MEASURE,
+        measure=FOR_SIMULATIONS,
         cost=numbers_in(limits),
     )
     return np.asarray(found)
-
-
-def outcome_of(result: Result, table: ParameterTable) -> _native.Outcome:
-    """A result with a row a tick, to be scored."""
-    return _native.Outcome(
-        mse=result.mse,
-        itae=result.itae,
-        itau=result.itau,
-        diverged=result.diverged,
-        angles=result.angles,
-        duties=result.duties,
-        pwm_top=pwm_steps(table.board),
-    )

@@ -18,6 +18,7 @@ import { PagePort } from "./port";
 
 const PORT = "an Arduino Mega and an arm, simulated in this page";
 const RESTARTED = "The board restarted, and its motors are off.";
+const BOOT_MS = 2200; // until a bootloader has given up waiting and the firmware has said hello
 const FLASHING = "The board is being flashed.";
 const UNPOWERED = "The board has no power.";
 const UNKEPT = "This browser has no room to keep what the board stores; it ends with this page.";
@@ -32,6 +33,7 @@ export class PageBoard implements Board, BenchActions, Pick<BoardPort, "flash"> 
   private keptSentence = ""; // of what the browser had kept; told once the board is there
   private unkeptTold = false;
   private port: PagePort | null = null; // while the board is being flashed
+  private said: () => void = () => undefined;
 
   /** `worker` runs worker.ts, `code` is the module, `firmware` gives the HEX file of a board, `store` is the browser's own. */
   constructor(
@@ -77,6 +79,7 @@ export class PageBoard implements Board, BenchActions, Pick<BoardPort, "flash"> 
       case "bytes":
         if (this.port) this.port.hear(message.data);
         else this.listener?.bytes(message.data);
+        this.said();
         this.tell({ kind: "taken", count: message.data.length });
         break;
       case "restarted":
@@ -121,11 +124,21 @@ export class PageBoard implements Board, BenchActions, Pick<BoardPort, "flash"> 
     try {
       return await flash(this.port, file, this.firmware, report);
     } finally {
+      report("starting the firmware", 0);
       this.port = null;
       this.listener?.link({ open: true, port: PORT, sentence: "" });
       this.drive();
+      await this.saysSomething();
       await this.change({ speed });
     }
+  }
+
+  /** Waits until the board says something, but no longer than a bootloader waits for a host. */
+  private saysSomething(): Promise<void> {
+    return new Promise((settle) => {
+      this.said = settle;
+      setTimeout(settle, BOOT_MS);
+    });
   }
 
   drive(): void {

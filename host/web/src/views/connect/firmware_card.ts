@@ -29,6 +29,7 @@ export class FirmwareCard {
 
   private async flash(): Promise<void> {
     setText(this.stage, "");
+    const { hello: before } = this.session;
     try {
       const board = await this.port.flash(await this.image, (stage, share) => {
         this.bar.hidden = false;
@@ -36,7 +37,7 @@ export class FirmwareCard {
         setText(this.stage, stage);
       });
       const { hello } = this.session;
-      setText(this.stage, `The ${board} holds what was written${hello ? `; firmware ${hello.fw_major}.${hello.fw_minor}.${hello.fw_patch} runs` : ""}.`);
+      setText(this.stage, `The ${board} holds what was written${hello && hello !== before ? `; firmware ${hello.fw_major}.${hello.fw_minor}.${hello.fw_patch} runs` : ""}.`);
     } catch (error) {
       setText(this.stage, "");
       throw error;
