@@ -132,8 +132,7 @@ def test_the_catalogue_is_that_of_the_command_line() -> None:
     assert (record["seconds"]["kind"], record["out"]["kind"], record["enable"]["kind"]) == ("number", "file", "flag")
     assert (record["ranges"]["option"], record["ranges"]["many"]) == ("--range", True)
     assert record["out"]["default"] == "log.csv"
-    assert VERBS["record"]["board"]
-    assert not VERBS["tune"]["board"]
+    assert [VERBS[verb]["board"] for verb in ("tune", "record", "flash")] == ["none", "lent", "taken"]
     assert VERBS["tune"]["arguments"][0]["kind"] == "file"
     for verb in VERBS.values():
         assert verb["help"].endswith(".")

@@ -13,7 +13,7 @@ from typing import Any
 import click
 
 from greywhale.cli.verbs import greywhale
-from greywhale.dashboard.verbs import ArgumentFacts, VerbFacts
+from greywhale.dashboard.verbs import ArgumentFacts, BoardUse, VerbFacts
 
 VERBS = (
     *("record", "replay", "calibrate", "doctor", "info", "evaluate", "identify", "tune", "commission", "adapt"),
@@ -48,10 +48,15 @@ def _facts(verb: str) -> VerbFacts:
     return {
         "verb": verb,
         "help": command.get_short_help_str(200),
-        "board": any(one.name == "port" for one in command.params),
-        "takes_port": verb in TAKES_PORT,
+        "board": _board_use(verb, command),
         "arguments": [_argument(one) for one in command.params if one.name not in hidden],
     }
+
+
+def _board_use(verb: str, command: click.Command) -> BoardUse:
+    if verb in TAKES_PORT:
+        return "taken"
+    return "lent" if any(one.name == "port" for one in command.params) else "none"
 
 
 def _argument(parameter: click.Parameter) -> ArgumentFacts:

@@ -16,6 +16,7 @@ import subprocess
 import threading
 import time
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal, TypedDict
 
@@ -32,6 +33,23 @@ INTERRUPTED = 130  # the exit code of a verb that Ctrl-C ended
 END_WAIT_S = 15.0
 MOST_SAID_LINES = 200  # kept of a verb's output, the newest
 _PIECE_BYTES = 65536  # of a pipe, read at once
+
+
+@dataclass(frozen=True)
+class Lent:
+    """A board whose line the server lends to a verb, for a page that wished it."""
+
+    port: str
+    relay: Relay
+    wish: Wish
+
+
+@dataclass(frozen=True)
+class Taken:
+    """A port that a verb has itself; `give_back` is called when it has ended."""
+
+    port: str
+    give_back: Callable[[], None]
 
 
 class Facts(TypedDict):
@@ -62,19 +80,15 @@ class Job:
         arguments: dict[str, Any],
         folder: Path,
         changed: Callable[[Job], None],
-        lender: tuple[Relay, str, Wish] | None = None,
-        done: Callable[[], None] | None = None,
+        board: Lent | Taken | None = None,
     ) -> None:
-        """`program` takes two descriptors, a port and the verb's words; `lender` is a relay, its port and a page's wish
-        for a verb that uses the board. `done` is called when a verb that has the port itself has ended.
-        """
+        """`program` takes two descriptors, a port and the verb's words; `board` is how the verb uses a board."""
         self.facts: Facts = {
             "kind": "job", "id": secrets.token_hex(4), "verb": verb, "arguments": arguments, "state": "running",
             "progress": None, "countdown": 0, "summary": None, "result": None, "error": None, "exit_code": None,
             "said": [],
         }  # fmt: skip
-        self.uses_board = lender is not None or done is not None
-        self._done = done
+        self.board = board
         self._changed = changed
         self._printed = bytearray()
         self._rests: dict[str, bytes] = {"progress": b"", "said": b""}
@@ -86,7 +100,7 @@ class Job:
         self._started = self._stopping = False
         self._why = ""
         with contextlib.ExitStack() as handed:
-            progress = self._start(program, words, folder, lender, handed)
+            progress = self._start(program, words, folder, handed)
         self._thread = threading.Thread(target=self._run, args=(progress,), name="greywhale-job", daemon=True)
         self._thread.start()
 
@@ -95,7 +109,6 @@ class Job:
         program: Sequence[str],
         words: Sequence[str],
         folder: Path,
-        lender: tuple[Relay, str, Wish] | None,
         handed: contextlib.ExitStack,
     ) -> int:
         """Start the process; where its progress is read. `handed` closes here what the process has then."""
@@ -104,15 +117,16 @@ class Job:
         with contextlib.ExitStack() as failed:
             failed.callback(self._wake_out.close)
             failed.callback(self._wake_in.close)
-            if lender is not None:
-                relay, port, wish = lender
+            if isinstance(self.board, Lent):
+                port = self.board.port
                 own, theirs = socket.socketpair()
                 handed.callback(theirs.close)
                 failed.callback(own.close)
                 descriptors.append(theirs.fileno())
                 line = str(theirs.fileno())
                 client = Client(Outbox(self._wake, MOST_SAMPLES), self.facts["verb"], self.facts["id"], self._interrupt)
-                self._line = LentEnd(relay, own, client, wish)  # from now on a stop, or the page's end, is heard
+                # From now on a stop, or the page's end, is heard.
+                self._line = LentEnd(self.board.relay, own, client, self.board.wish)
                 failed.callback(self._line.close)
             progress, reports = os.pipe()
             handed.callback(os.close, reports)
@@ -229,8 +243,8 @@ class Job:
         code = self._process.wait()
         if self._line is not None:
             self._line.close()
-        if self._done is not None:
-            self._done()
+        if isinstance(self.board, Taken):
+            self.board.give_back()
         for pipe in (self._process.stdin, self._process.stdout, self._process.stderr):
             assert pipe is not None
             with contextlib.suppress(OSError):

@@ -10,7 +10,7 @@ from typing import Any, TypedDict
 from greywhale.base import system
 from greywhale.base.errors import BadUsage, UserError, cut
 from greywhale.dashboard.folder import Folder
-from greywhale.dashboard.job import Facts, Job
+from greywhale.dashboard.job import Facts, Job, Lent, Taken
 from greywhale.dashboard.relay import Relay, Wish
 from greywhale.dashboard.verbs import VerbFacts, command_line
 
@@ -78,18 +78,17 @@ class Jobs:
                 raise UserError("the dashboard ends; start it again.")
             if sum(job.running for job in self._jobs) >= MOST_RUNNING_JOBS:
                 raise UserError(f"{MOST_RUNNING_JOBS} verbs are running; wait for the end of one, or stop it.")
-            port, lender, done = "", None, None
-            if verb["board"]:
-                self._require_board(wish, there=not verb["takes_port"])
-                port = self._relay.link["port"]
-                lender = self._relay, port, wish
-            if verb["takes_port"]:
+            board: Lent | Taken | None = None
+            if verb["board"] != "none":
+                self._require_board(wish, there=verb["board"] == "lent")
+                board = Lent(self._relay.link["port"], self._relay, wish)
+            if verb["board"] == "taken":
                 freed = failed.enter_context(ExitStack())
                 port = freed.enter_context(self._away(f"`greywhale {verb['verb']}` has the port."))
-                lender, done = None, freed.close
-            options = [*(["--port", port] if port else []), "--json"]
+                board = Taken(port, freed.close)
+            options = [*(["--port", board.port] if board else []), "--json"]
             line = [*words[: words.index("--")], *options, *words[words.index("--") :]]
-            job = Job(self._program, verb["verb"], line, arguments, self._folder.path, self._tell, lender, done)
+            job = Job(self._program, verb["verb"], line, arguments, self._folder.path, self._tell, board)
             failed.pop_all()
             self._keep(job)
         return job.facts
@@ -125,7 +124,7 @@ class Jobs:
         """Refuse a verb that uses the board, where it is to be `there`, or where others have it."""
         if there and not self._relay.link["open"]:
             raise UserError(self._relay.link["sentence"] or "no board is there yet.")
-        if any(job.running and job.uses_board for job in self._jobs):
+        if any(job.running and job.board for job in self._jobs):
             raise UserError("another verb uses the board; wait for its end, or stop it.")
         self._relay.require(wish)
 

@@ -12,6 +12,10 @@ LONGEST_VALUE_LETTERS = 1000  # a path is shorter
 MOST_VALUES = 100  # of one argument, such as the logs of `evaluate`
 
 
+# How a verb uses a board. Taken: it has the port itself, and the page sees nothing meanwhile.
+BoardUse = Literal["none", "lent", "taken"]
+
+
 class ArgumentFacts(TypedDict):
     """One argument; `option` is its word on the command line, "" where its place alone tells."""
 
@@ -28,8 +32,7 @@ class ArgumentFacts(TypedDict):
 class VerbFacts(TypedDict):
     verb: str  # such as "params backup"
     help: str  # one sentence
-    board: bool  # whether it needs a board
-    takes_port: bool  # whether it needs the port itself, so that the page sees nothing meanwhile
+    board: BoardUse
     arguments: list[ArgumentFacts]
 
 

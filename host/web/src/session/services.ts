@@ -69,9 +69,8 @@ export type Argument = {
 export type Verb = {
   readonly verb: string;
   readonly help: string;
-  readonly board: boolean;
-  /** True if it needs the port itself, with or without a board at it. */
-  readonly takes_port: boolean;
+  /** How it uses a board. Taken: it has the port itself, with or without a board at it. */
+  readonly board: "none" | "lent" | "taken";
   readonly arguments: readonly Argument[];
 };
 

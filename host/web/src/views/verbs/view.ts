@@ -54,10 +54,10 @@ export class DoView implements View {
   }
 
   /** The reason why a verb cannot be started from this page now, in a sentence; empty where it can. */
-  private whyNot({ board, takes_port }: Verb): string {
+  private whyNot({ board }: Verb): string {
     const { link, whyNotChange } = this.session;
-    if (!board) return "";
-    if (!link.open && !takes_port) return link.sentence || "No board is there yet.";
+    if (board === "none") return "";
+    if (!link.open && board === "lent") return link.sentence || "No board is there yet.";
     return whyNotChange;
   }
 
