@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import pytest
 import serial
 
+from greywhale.base import system
 from greywhale.base.bench_process import BenchProcess
 from greywhale.base.errors import UserError
 from greywhale.board.device import Device
@@ -53,6 +54,12 @@ def test_a_second_program_is_turned_away(port: SocketPort) -> None:
         with pytest.raises(serial.SerialException):
             second.read(1)
         assert port.connected
+
+
+def test_a_system_whose_terminals_tell_nothing_gets_a_tcp_port(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(system, "HAS_BENCH_PORTS", False)
+    with running(ServeOptions()) as server:
+        assert server.port.path.startswith("socket://127.0.0.1:")
 
 
 def test_a_full_queue_loses_bytes_and_blocks_nobody(port: SocketPort) -> None:

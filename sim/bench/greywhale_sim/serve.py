@@ -17,6 +17,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from types import FrameType
 
+from greywhale.base import system
 from greywhale.base.errors import BAD_USAGE, UserError
 from greywhale.base.runtime import make_runtime_directory
 from greywhale.files.outputs import require_files
@@ -66,7 +67,7 @@ def running(
 
 
 def _open_port(options: ServeOptions, note: Callable[[str], None]) -> Port:
-    if options.listen is None and sys.platform == "linux":
+    if options.listen is None and system.HAS_BENCH_PORTS:
         from greywhale_sim.serial_port import SerialPort  # other systems have not what it needs
 
         return SerialPort(_links(options, note))

@@ -45,6 +45,8 @@ HANDS_DOWN_DESCRIPTORS = sys.platform != "win32"  # to the programs that it star
 WAITS_FOR_SOCKETS = sys.platform != "win32"  # asyncio's usual loop, for any of them
 # Sockets whose name is no file, and which tell who is at the other end.
 HAS_ABSTRACT_SOCKETS = sys.platform == "linux"
+# Pseudo-terminals that tell how far they were read; elsewhere a bench serves a TCP port.
+HAS_BENCH_PORTS = sys.platform == "linux"
 
 # How a file is opened: as it is on the disk, and not where a link leads.
 _PLAIN = getattr(os, "O_BINARY", 0) | getattr(os, "O_NOFOLLOW", 0)

@@ -43,11 +43,6 @@ def words_of(options: Mapping[str, Any]) -> dict[str, list[str]]:
     return {name: one for name, one in words.items() if one}
 
 
-def need_bench() -> None:
-    """Refuse where the system has not what a bench in a process of its own needs."""
-    from greywhale_sim import serial_port  # noqa: F401
-
-
 def show_mistakes(as_json: bool) -> None:
     """All mistakes that `--mistake` knows."""
     from greywhale_sim.faults import FAULTS, listed

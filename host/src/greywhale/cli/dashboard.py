@@ -19,7 +19,7 @@ from click.core import ParameterSource
 from greywhale.base import bench_process, processes
 from greywhale.base.errors import BadUsage
 from greywhale.cli import completion
-from greywhale.cli.bench import Mistakes, bench_options, need_bench, show_mistakes, words_of
+from greywhale.cli.bench import Mistakes, bench_options, show_mistakes, words_of
 from greywhale.cli.output import FILE, json_of, json_option, option, port_option, tell
 from greywhale.cli.person import on_enter
 from greywhale.files.arm import load_arm
@@ -112,7 +112,6 @@ def _is_given(context: click.Context, name: str) -> bool:
 @contextlib.contextmanager
 def _starting(options: Mapping[str, list[str]], arm: Path | None) -> Iterator[Future[bench_process.BenchProcess]]:
     """A bench that comes up meanwhile, and is ended whatever happens."""
-    need_bench()
     words = [word for one in options.values() for word in one] + ([] if arm is None else ["--arm", str(arm)])
     with ThreadPoolExecutor(1) as pool:
         starting = pool.submit(bench_process.BenchProcess, *words)

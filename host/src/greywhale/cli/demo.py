@@ -7,9 +7,9 @@ from typing import Any
 
 import click
 
+from greywhale.base import system
 from greywhale.base.errors import MOST_SEED
 from greywhale.cli import completion
-from greywhale.cli.bench import need_bench
 from greywhale.cli.output import FILE, json_option, option, progress, show, warn
 from greywhale.files import controller as controller_file
 from greywhale.files.arm import load_arm
@@ -22,7 +22,12 @@ from greywhale.files.outputs import require_folder
 @option("--leader", type=FILE, help="CSV with the leader's motion; without it, a generated one.")
 @option("--board", type=click.Choice(["mega", "nano"]), default="mega", help="The simulated board.")
 @option("--arm", type=FILE, help="TOML with the arm; without it, the built-in one.")
-@option("--speed", type=click.Choice(["1", "max"]), default="max", help="Real time or faster.")
+@option(
+    "--speed",
+    type=click.Choice(["1", "max"]),
+    default="max" if system.HAS_BENCH_PORTS else "1",
+    help="Real time or faster.",
+)
 @option("--duration", "duration_s", type=float, default=20.0, help="Seconds of generated motion.")
 @option("--seed", type=click.IntRange(0, MOST_SEED), default=1, help="Seed of the generated motion.")
 @option(
@@ -50,7 +55,6 @@ def command(
     """
     require_folder(out, "logs and pictures")
     _check_inputs(leader, arm, controller)
-    need_bench()
     from greywhale.cli import story
 
     demo = story.DemoOptions(out=out, leader=leader, arm=arm, controller=controller, **options)
