@@ -392,7 +392,7 @@ void bind_bench(nb::module_& m) {
            "board"_a, "wiring"_a, "person"_a, "plant"_a, "pots"_a, "seed"_a, "electrics"_a,
            "`plant` is the parameters of the bench's own arm, or an object with step(voltages, dt). Who makes a bench "
            "keeps its parts alive.")
-      .def("run_slices_of_250_us", &run, "count"_a, "trace"_a.none(),
+      .def("advance", &run, "count"_a, "trace"_a.none(),
            "False where the program on the board crashed. `trace(cycle, pins, angles)` is called after every slice.")
       .def_prop_ro(
           "angles", [](nb::handle self) { return view_of(nb::cast<PyBench&>(self).angles(), self); },

@@ -130,7 +130,7 @@ class Bench(_native.Bench):
         self.run_slices(round(seconds * SLICES_PER_S))
 
     def run_slices(self, count: int) -> None:
-        if not self.run_slices_of_250_us(count, self.trace):
+        if not self.advance(count, self.trace):
             board = self.board
             raise CrashError(
                 f"the program on the simulated board crashed at address {board.pc:#07x}: {board.crash_reason}."
