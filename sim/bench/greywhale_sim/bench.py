@@ -94,12 +94,20 @@ class Bench(_native.Bench):
         in_use = sum(1 << joint for joint in joints)
         electrics = _native.BenchElectrics(chip.kind, supply_v, np.zeros(4) if emf is None else emf, in_use)
         super().__init__(board, wiring.native(), leader, own, parts, seed, electrics)
-        # The native bench counts on these to live as long as it does.
-        self.board, self.leader = board, leader
-        self._plant = plant
+        # The native bench counts on these to live as long as it does, and to stay what they are.
+        self._board, self._leader, self._plant = board, leader, plant
         self.wiring = wiring
         self.joints = joints
         self.trace: Trace | None = None
+
+    @property
+    def board(self) -> Board:
+        return self._board
+
+    @property
+    def leader(self) -> LeaderPlayer:
+        """The person at the bench."""
+        return self._leader
 
     @property
     def plant(self) -> _native.Arm | Plant:
