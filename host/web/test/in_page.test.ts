@@ -51,6 +51,10 @@ test("a clock owes what passed, at any speed, and gives up what is more than a s
   assert.equal(clock.due(1025, 10), 100);
   assert.equal(clock.due(1525, 1), 500);
   assert.equal(clock.due(9000, 1), 1000);
+  clock.owe(300);
+  assert.equal(clock.due(9001, 1), 301);
+  clock.owe(900);
+  assert.equal(clock.due(9500, 1), 1000);
   clock.hold();
   assert.equal(clock.due(20_000, 1), 0);
 });

@@ -1,5 +1,5 @@
-// Counts the ticks that are due by the wall clock. What a busy machine missed is made up for, as a second of ticks takes some
-// milliseconds; one that is too slow falls behind.
+// Counts the ticks that are due by the wall clock. What a busy machine missed is made up for, up to a second of it; one that is
+// too slow falls behind.
 
 const GIVE_UP_MS = 1000;
 
@@ -11,10 +11,15 @@ export class Clock {
   due(nowMs: number, speed: number): number {
     const passed = this.last === null ? 0 : Math.min(nowMs - this.last, GIVE_UP_MS);
     this.last = nowMs;
-    this.owed += passed * speed;
+    this.owed = Math.min(this.owed + passed * speed, GIVE_UP_MS * speed);
     const whole = Math.floor(this.owed);
     this.owed -= whole;
     return whole;
+  }
+
+  /** Takes back ticks for which there was no time. */
+  owe(ticks: number): void {
+    this.owed += ticks;
   }
 
   /** Lets time stand still until ticks are asked for again. */

@@ -7,6 +7,7 @@ import type { FromBench, ToBench } from "./messages";
 import { BenchModule } from "./module";
 
 const TURN_MS = 4;
+const MOST_TURN_MS = 30; // so that a stop is heard in time, however fast time shall be
 const MOST_UNREAD = 65_536; // bytes, about 1.5 s of samples
 
 const page = globalThis as unknown as {
@@ -69,7 +70,10 @@ class Bench {
       return;
     }
     const said: Uint8Array[] = [];
-    for (let left = this.clock.due(performance.now(), this.loop.speed); left; left--) said.push(this.loop.tick().slice());
+    const now = performance.now();
+    let left = this.clock.due(now, this.loop.speed);
+    for (; left && performance.now() < now + MOST_TURN_MS; left--) said.push(this.loop.tick().slice());
+    this.clock.owe(left);
     if (this.module.call("crashed")) throw new Error("the program on its board has crashed");
     const size = said.reduce((sum, piece) => sum + piece.length, 0);
     this.keepEeprom(); // before the board can say that it has stored something
