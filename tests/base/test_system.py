@@ -72,13 +72,14 @@ print([run(words.split()) for words in sys.argv[1:]])
     )
     assert done.stdout.splitlines()[-1] == str([0, 0, *[FAILED] * 5])
     assert (tmp_path / "arm.toml").stat().st_size > 1000
-    missing, *busy, no_port, no_bench = done.stderr.splitlines()
+    missing, *busy, no_port, starting, no_bench = done.stderr.splitlines()
     assert missing.startswith("greywhale: none.csv: ")
     assert [line.partition(" (")[0] for line in busy] == [
         f"greywhale: {port}: the port is in use by another program; close that" for port in ("COM7", "COM77")
     ]
     assert no_port.startswith("greywhale: arm: there is no such port")
-    assert no_bench.startswith("greywhale: this verb needs fcntl, which Windows does not have; use WSL 2")
+    assert "starting the bench" in starting
+    assert no_bench.startswith("greywhale: no verb starts a bench on Windows; run `greywhale sim`")
 
 
 def test_no_motor_starts_on_windows_where_no_ctrl_c_could_stop_it(tmp_path: Path) -> None:

@@ -14,6 +14,7 @@ import sys
 import tempfile
 from typing import Any, Protocol
 
+from greywhale.base import system
 from greywhale.base.closing import Closing
 from greywhale.base.errors import UserError
 from greywhale.base.processes import start
@@ -36,6 +37,8 @@ class BenchProcess(Closing):
     """
 
     def __init__(self, *options: str, module: str = "greywhale_sim") -> None:
+        if not system.WAITS_FOR_PIPES:
+            raise UserError("no verb starts a bench on Windows; run `greywhale sim` and give other verbs its port.")
         self._errors = tempfile.TemporaryFile()  # noqa: SIM115 (close() closes it)
         self._process = start(
             [sys.executable, "-m", module, "--control", "--json", *options],

@@ -42,6 +42,7 @@ else:
 ENDING = (signal.SIGINT, signal.SIGTERM, HANG_UP)
 RENAMES_OPEN_FILES = sys.platform != "win32"
 HANDS_DOWN_DESCRIPTORS = sys.platform != "win32"  # to the programs that it starts
+WAITS_FOR_PIPES = sys.platform != "win32"  # select, for what a program prints
 WAITS_FOR_SOCKETS = sys.platform != "win32"  # asyncio's usual loop, for any of them
 # Sockets whose name is no file, and which tell who is at the other end.
 HAS_ABSTRACT_SOCKETS = sys.platform == "linux"

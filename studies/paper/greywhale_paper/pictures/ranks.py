@@ -20,7 +20,7 @@ def plot_ranks(ranks: Mapping[str, Mapping[str, float]], title: str) -> Figure:
     across, last = range(len(ranks)), list(ranks.values())[-1]
     figure, axes = plt.subplots(figsize=(WIDE, 0.9 + 0.36 * max(len(last), 6)))
     names_in = 0.3 + _LETTER_IN * max(map(len, last))
-    figure.subplots_adjust(**leave(figure, 0.5, names_in, 0.3, 0.32))
+    figure.subplots_adjust(**leave(figure, 0.6, names_in, 0.3, 0.32))
     for index, method in enumerate(last):
         colour = _COLOURS[index % len(_COLOURS)]
         style = _STYLES[index // len(_COLOURS) % len(_STYLES)]
