@@ -27,8 +27,8 @@ class Board:
 
     port = "board"
 
-    def __init__(self, lose: float = 0.0, delay: int = 2, seed: int = 1) -> None:
-        self.random, self.lose, self.delay = np.random.default_rng(seed), lose, delay
+    def __init__(self, lose: float = 0.0, delay: int = 2, seed: int = 1, speed: float = 1.0) -> None:
+        self.random, self.lose, self.delay, self.speed = np.random.default_rng(seed), lose, delay, speed
         self.next, self.queue = BEGUN.next, deque[tuple[int, ...]]()
         self.point = np.array(BEGUN.reference) / 4.0
         self.tick = 0
@@ -50,7 +50,7 @@ class Board:
         return self._answer
 
     def clock(self) -> float:
-        return self.tick / 1000
+        return self.tick / 1000 / self.speed
 
     def live(self) -> None:
         """A tick: take what has arrived, play a point every 16 ticks."""
@@ -132,6 +132,14 @@ def test_the_motion_begins_when_the_soft_start_is_over() -> None:
         board.live()
         leading.keep_ahead(board.tick, sample(board.tick))
     assert not np.allclose(board.played[-1], board.played[0])
+
+
+def test_a_simulated_board_that_lives_fast_gets_a_lost_point_again_in_time() -> None:
+    """By this machine's clock alone, forty times as many of its ticks would pass, and the motion would stand still."""
+    real, fast = Board(lose=0.02), Board(lose=0.02, speed=40.0)
+    assert play(real, PLAN).starved == play(fast, PLAN).starved == 0
+    assert fast.sent > len(moved(fast.played)), "points were lost"
+    assert np.allclose(moved(fast.played), moved(real.played), atol=1e-12)
 
 
 def test_a_host_that_stood_still_sends_no_more_than_the_board_can_receive() -> None:

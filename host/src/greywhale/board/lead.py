@@ -2,8 +2,8 @@
 
 Control points go out ahead of their time. A lost point is sent again. The pace falls when a follower does not keep up.
 The board's own ticks time everything, as in `stream`: a simulated board may live faster than this machine. What is sent
-again waits for this machine's clock as well: after a pause it finds hundreds of ticks at once, and so many points would
-flood the board.
+again waits for this machine's clock as well, at the pace of the board's life so far: after a pause it finds hundreds of
+ticks at once, and so many points would flood the board.
 """
 
 from __future__ import annotations
@@ -114,6 +114,7 @@ class Leading:
         self._answer: schema.LeadPointReply | None = None
         self._place, self._pace, self._wanted = 0.0, 1.0, 1.0
         self._last_tick = 0
+        self._began: tuple[int, float] | None = None  # tick and time of the first sample
         self._made_all, self._resting = False, True
         self.slowest = 1.0
         self.starved = 0
@@ -137,6 +138,7 @@ class Leading:
         The motion begins once the soft start is over. Before that the board is told to rest, so that its queue is full.
         """
         self._last_tick = tick
+        self._began = self._began or (tick, self._device.clock())
         self._resting = sample.state is not schema.State.FOLLOWING
         self._hear(tick)
         self._watch(sample)
@@ -162,7 +164,12 @@ class Leading:
 
     def _waited(self, tick: int, ticks: int) -> bool:
         """True if the last progress is so long ago, by the board and by this machine."""
-        return tick - self._since > ticks and 1000 * (self._device.clock() - self._since_s) > ticks
+        if tick - self._since <= ticks or self._began is None:
+            return False
+        began, began_s = self._began
+        now_s = self._device.clock()
+        ticks_per_ms = max(1.0, (tick - began) / max(1000 * (now_s - began_s), 1.0))  # above 1 for a simulated board
+        return 1000 * (now_s - self._since_s) * ticks_per_ms > ticks
 
     def _hear(self, tick: int) -> None:
         try:

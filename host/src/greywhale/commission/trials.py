@@ -121,6 +121,11 @@ class Trials:
                 f"with the controllers from before, the check ended early: {trial.stopped}; narrow the --range, or "
                 "upload calmer controllers first."
             )
+        if not trial.measured.whole:
+            raise AnewError(
+                "the check with the controllers from before cannot be measured, because this computer was late with "
+                "its motion; close other programs, and begin anew."
+            )
         return trial
 
     def play(self, connect: Callable[[], ArmOnPort], rows: Controllers) -> Trial:
