@@ -42,8 +42,8 @@ onmessage = async ({ data }) => {
     }
     return said;
   };
-  const numbers = new Float64Array(bench.memory.buffer, bench.numbers(), 256);
-  numbers.set(data.numbers);
+  const numbers = () => new Float64Array(bench.memory.buffer, bench.numbers(), 256);  // the memory may grow
+  numbers().set(data.numbers);
   bench.start(0);
   for (const [address, content, bootloader] of data.programs) bench.program(address, fill(content), bootloader);
   bench.power(1);
@@ -54,7 +54,7 @@ onmessage = async ({ data }) => {
   }
   const cycle = bench.cycle(), start = performance.now();
   for (let second = 0; second < data.seconds; second++) {  // the leader turns to and fro
-    numbers.fill(0.3 * Math.sin(second), 0, 4);
+    numbers().fill(0.3 * Math.sin(second), 0, 4);
     bench.lead();
     live(1);
   }
@@ -62,6 +62,7 @@ onmessage = async ({ data }) => {
   bench.send(fill(data.status));
   postMessage({ cycles: bench.cycle() - cycle, took, said: live(0.09) });
 };
+addEventListener("unhandledrejection", ({ reason }) => setTimeout(() => { throw reason; }));
 """
 RUN = """([code, given]) => new Promise((settle, fail) => {
   const worker = new Worker(URL.createObjectURL(new Blob([code], { type: "text/javascript" })));
