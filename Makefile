@@ -144,7 +144,8 @@ docs: setup ## write the generated files again (link schema, reference page, sch
 	$(PYTHON) -m tools.generate
 	$(PYTHON) -m tools.docs
 
-site: setup ## the page with firmware and arm inside, and the documentation: one folder for any web server, in build/try
+site: ## the page with firmware and arm inside, and the documentation: one folder for any web server, in build/try
+	@$(SETUP) site
 	$(PYTHON) -m tools.site
 
 dist: setup ## build source distributions and wheels of both packages for this machine, in build/dist

@@ -1,7 +1,8 @@
 """Pins every Python package that the pyproject.toml of greywhale and greywhale-paper ask for: `make lock` writes
 requirements.txt with what it takes to build and run, tools/setup/page.txt with what builds the page,
-tools/setup/compiler.txt with a compiler for the firmware, tools/requirements.txt with what checks and tests need beside
-them, and tools/oracles/requirements.txt with what the outside references need beside all of them.
+tools/setup/docs.txt with what builds the documentation, tools/setup/compiler.txt with a compiler for the firmware,
+tools/requirements.txt with what checks and tests need beside them, and tools/oracles/requirements.txt with what the
+outside references need beside all of them.
 
 Every version comes with the digests of its files, for all platforms, so that the set-up installs these files or none.
 """
@@ -31,6 +32,10 @@ CHECKS_HEADER = """\
 PAGE = ROOT / "tools/setup/page.txt"
 PAGE_HEADER = """\
 # What builds the page, pinned with the digests of its files. Written by `make lock`.
+"""
+DOCS = ROOT / "tools/setup/docs.txt"
+DOCS_HEADER = """\
+# What builds the documentation, pinned with the digests of its files. Written by `make lock`.
 """
 COMPILER = ROOT / "tools/setup/compiler.txt"
 COMPILER_HEADER = """\
@@ -68,17 +73,19 @@ def build() -> list[str]:
 
 def wanted() -> list[str]:
     """The packages that a checkout asks for to be built, run, checked and tested."""
-    return [*build(), *group("dev")]
+    return [*build(), *group("docs"), *group("dev")]
 
 
 def group(name: str) -> list[str]:
-    """A dependency group of its own: "page" builds the page, "compiler" the firmware."""
+    """A dependency group of its own: "page" builds the page, "docs" the documentation, "compiler" the firmware."""
     return _names_of("dependency-groups", name)
 
 
 def versions() -> list[str]:
     """The project's own pinned packages as name==version, without the digests of their files."""
-    lines = [line for file in (RUN, PAGE, COMPILER, CHECKS) for line in file.read_text(encoding="utf-8").splitlines()]
+    lines = [
+        line for file in (RUN, PAGE, DOCS, COMPILER, CHECKS) for line in file.read_text(encoding="utf-8").splitlines()
+    ]
     return _versions([line for line in lines if re.match(r"[\w.-]+==", line)])
 
 
@@ -127,7 +134,8 @@ def main() -> None:
         run = _compile(python, folder, build(), _versions(everything))
         _write(RUN, RUN_HEADER, run)
         known = _names(run)
-        for name, file, header in (("page", PAGE, PAGE_HEADER), ("compiler", COMPILER, COMPILER_HEADER)):
+        of_groups = (("page", PAGE, PAGE_HEADER), ("docs", DOCS, DOCS_HEADER), ("compiler", COMPILER, COMPILER_HEADER))
+        for name, file, header in of_groups:
             lines = without(_compile(python, folder, group(name), _versions(everything)), known)
             _write(file, header, lines)
             known |= _names(lines)

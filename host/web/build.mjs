@@ -1,7 +1,7 @@
 // Bundles the page into the Python package (`npm run build`); the page with a bench inside into a folder (`npm run site
 // FOLDER`), or into one file there (`npm run single FOLDER`); the tests, and runs them (`npm test`).
 import { spawnSync } from "node:child_process";
-import { copyFileSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { copyFileSync, existsSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { dirname, join, resolve } from "node:path";
 import { fileURLToPath } from "node:url";
 import { gzipSync } from "node:zlib";
@@ -26,6 +26,13 @@ async function buildPage(out, entryPoints) {
     legalComments: "eof",
   });
   copyFileSync(join(here, "src/index.html"), join(out, "index.html"));
+}
+
+/** The page that a server hands out, and beside it the rules of a calibration, where tools/setup could compile them. */
+async function buildServed(out) {
+  await buildPage(out, { page: "src/entries/page.ts" });
+  const rules = join(here, "../../build/web/calibration.wasm");
+  if (existsSync(rules)) copyFileSync(rules, join(out, "calibration.wasm"));
 }
 
 const WORKERS = { worker: "src/sources/in_page/worker.ts", tuner: "src/tuner/worker.ts" };
@@ -73,4 +80,4 @@ const [what, ...args] = process.argv.slice(2);
 if (what === "test") process.exitCode = await runTests(join(here, "../../build/page-tests"), args);
 else if (what === "site") await buildPage(resolve(args[0]), SITE);
 else if (what === "single") await buildSingle(resolve(args[0]));
-else await buildPage(what ?? join(here, "../src/greywhale/dashboard/page"), { page: "src/entries/page.ts" });
+else await buildServed(what ?? join(here, "../src/greywhale/dashboard/page"));

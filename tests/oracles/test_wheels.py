@@ -132,7 +132,8 @@ def test_the_wheel_holds_code_firmware_bench_and_controllers_and_nothing_else(bu
     assert len([name for name in names if name.endswith(".so")]) == 1
     assert {"greywhale/_native.pyi"} == {name for name in names if name.endswith(".pyi")}
     assert {"greywhale/py.typed", "greywhale/cli/flash.py", "greywhale_sim/serve.py"} <= names
-    assert {f"greywhale/dashboard/page/{name}" for name in ("index.html", "page.js", "page.css")} <= names
+    page = ("index.html", "page.js", "page.css", "calibration.wasm")
+    assert {f"greywhale/dashboard/page/{name}" for name in page} <= names
     assert {"greywhale_sim/bootloaders/mega.hex", "greywhale_sim/bootloaders/nano.hex"} <= names
     assert {Path(name).parts[0].split("-")[0] for name in names} == {"greywhale", "greywhale_sim"}  # and no library
     assert not [name for name in names if "test" in name]

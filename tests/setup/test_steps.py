@@ -10,6 +10,7 @@ import pytest
 from tools.setup import __main__ as setup
 from tools.setup import extensions, firmware, page, page_modules, paper, platformio, stamps, system, venv
 from tools.setup.console import SetupError
+from tools.setup.goal import Goal
 
 
 @pytest.fixture
@@ -35,14 +36,13 @@ def done(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     return taken
 
 
-@pytest.mark.parametrize("checks", [False, True])
-def test_the_venv_is_whole_before_anything_uses_it_and_written_by_nobody_meanwhile(
-    done: list[str], checks: bool
-) -> None:
-    setup.steps(with_page=True, checks=checks)
+@pytest.mark.parametrize("goal", Goal)
+def test_the_venv_is_whole_before_anything_uses_it_and_written_by_nobody_meanwhile(done: list[str], goal: Goal) -> None:
+    setup.steps(goal)
     before, beside, after = done[:2], done[done.index("{") + 1 : done.index("}")], done[done.index("}") + 1 :]
     assert before == ["system", "venv"]
-    assert set(beside) == {"extensions", "platformio", "firmware", "page", *(["page_modules"] if checks else [])}
+    assert set(beside) == {"extensions", "platformio", "firmware", *(["page", "page_modules"] if goal else [])}
+    assert not goal or beside.index("page_modules") < beside.index("page"), "which takes one of them along"
     assert after == ["installation", "paper"]
 
 

@@ -14,6 +14,7 @@ import pytest
 from tools import ROOT
 from tools.setup import system
 from tools.setup.console import SetupError
+from tools.setup.goal import Goal
 
 
 @pytest.fixture
@@ -42,20 +43,20 @@ def test_without_apt_what_is_lacking_is_named(
 ) -> None:
     monkeypatch.setattr(sysconfig, "get_paths", lambda: {"include": str(tmp_path)})
     with pytest.raises(SetupError) as error:
-        system.step(checks=False, avr_compiler=False)
+        system.step(Goal.RUN, avr_compiler=False)
     assert str(error.value).startswith("This system lacks a C++ compiler (g++ or clang++) and the C headers of /")
     assert str(error.value).endswith("(Python.h): install that, then run the same command again.")
 
 
 def test_without_apt_a_compiler_is_all_that_running_takes(programs: set[str]) -> None:
     programs.add("clang++")
-    system.step(checks=False, avr_compiler=False)
+    system.step(Goal.PAGE, avr_compiler=False)
 
 
 def test_without_apt_programs_for_checks_are_named_once(programs: set[str]) -> None:
     programs |= {"g++", "clang++", "chromium", "wasm-ld", "clang-tidy"}
     with pytest.raises(SetupError, match="^This system lacks avr-gcc and cppcheck: install that, then"):
-        system.step(checks=True, avr_compiler=True)
+        system.step(Goal.ALL, avr_compiler=True)
 
 
 def test_a_user_without_sudo_is_told_the_command(programs: set[str], monkeypatch: pytest.MonkeyPatch) -> None:

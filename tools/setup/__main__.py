@@ -1,5 +1,5 @@
-"""Everything that make needs, from a bare system on: `python3 -m tools.setup`; `python3 -m tools.setup page` leaves out
-what only checks and tests need, and `python3 -m tools.setup run` the page of the dashboard too.
+"""Everything that make needs, from a bare system on: `python3 -m tools.setup`; `python3 -m tools.setup site` leaves out
+what only checks and tests need, `... page` the documentation too, and `... run` the page as well.
 
 Needs only the system's Python. Each step checks whether it has anything to do, so that repeating it takes no time. What
 runs side by side shares nothing: it reads the .venv, which is whole by then, and writes to places of its own.
@@ -17,6 +17,7 @@ from contextlib import contextmanager
 from tools import ROOT
 from tools.setup import extensions, firmware, page, page_modules, paper, platformio, stamps, system, venv
 from tools.setup.console import SetupError, say, side_by_side
+from tools.setup.goal import Goal
 
 
 @contextmanager
@@ -43,20 +44,20 @@ def tell_how_long() -> None:
         say("the first time this takes about 2 minutes, on a busy or slow computer up to 6; after that a second")
 
 
-def steps(with_page: bool, checks: bool) -> None:
+def steps(goal: Goal) -> None:
     source = platformio.choose()
-    system.step(checks, avr_compiler=source == "system")
-    venv.step(with_page, checks, compiler=source != "registry")
+    checks = goal >= Goal.ALL
+    system.step(goal, avr_compiler=source == "system")
+    venv.step(goal, compiler=source != "registry")
 
     def build_firmware() -> None:
         platformio.step(source)
         firmware.step(source, checks)
 
     def build_page() -> None:
-        if with_page:
+        if goal >= Goal.PAGE:
+            page_modules.step(goal)
             page.step()
-        if checks:
-            page_modules.step()
 
     side_by_side(lambda: extensions.build(checks), build_firmware, build_page)
     extensions.install(checks)
@@ -64,14 +65,14 @@ def steps(with_page: bool, checks: bool) -> None:
 
 
 def main(arguments: list[str]) -> int:
-    with_page, checks = arguments != ["run"], not arguments
+    goal = Goal[arguments[0].upper()] if arguments else Goal.ALL
     start = time.monotonic()
     for request in (signal.SIGTERM, signal.SIGHUP):  # they end all as Ctrl-C does
         signal.signal(request, signal.default_int_handler)
     try:
         with lock_folder():
             tell_how_long()
-            steps(with_page, checks)
+            steps(goal)
     except SetupError as error:
         print(f"set-up: {error}", file=sys.stderr)
         return 1

