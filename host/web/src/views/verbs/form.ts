@@ -38,6 +38,17 @@ export class VerbForm {
     showReason(this.reason, reason);
   }
 
+  /** Fills in values of arguments by their names, as `given` has them. */
+  fill(given: Readonly<Record<string, unknown>>): void {
+    for (const { argument, input } of this.fields) {
+      const value = given[argument.name];
+      if (value === undefined) continue;
+      if (argument.kind === "flag") (input as HTMLInputElement).checked = value === true;
+      else input.value = Array.isArray(value) ? value.join(", ") : String(value);
+      input.closest("details")?.setAttribute("open", "");
+    }
+  }
+
   /** The values that a person gave; what was left as it is, is left out. */
   private given(): Record<string, unknown> {
     const given: Record<string, unknown> = {};

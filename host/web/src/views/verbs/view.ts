@@ -34,20 +34,29 @@ export class DoView implements View {
     const read = this.session.attempt(async () => {
       const verbs = await this.services.jobs.verbs();
       this.list.replaceChildren(...verbs.map((verb) => {
-        const choice = button(verb.verb, () => {
-          for (const other of this.list.children) other.setAttribute("aria-pressed", String(other === choice));
-          void this.session.attempt(() => this.choose(verb));
-        }, { title: verb.help, attrs: { "aria-pressed": "false" } });
-        return choice;
+        return button(verb.verb, () => void this.session.attempt(() => this.choose(verb)), {
+          title: verb.help, attrs: { "aria-pressed": "false" },
+        });
       }));
     });
     void read.then(() => { this.reading.hidden = true; });
   }
 
-  private async choose(verb: Verb): Promise<void> {
+  /** Shows the form of a verb with values filled in. */
+  async open(name: string, given: Readonly<Record<string, unknown>>): Promise<void> {
+    const verb = (await this.services.jobs.verbs()).find((one) => one.verb === name);
+    if (!verb) return;
+    await this.choose(verb, given);
+    this.form.scrollIntoView({ block: "nearest" });
+    this.form.querySelector<HTMLButtonElement>("button[type=submit]")?.focus();
+  }
+
+  private async choose(verb: Verb, given: Readonly<Record<string, unknown>> = {}): Promise<void> {
+    for (const choice of this.list.children) choice.setAttribute("aria-pressed", String(choice.textContent === verb.verb));
     const { files } = await this.services.state();
-    const form = new VerbForm(verb, files, (given) =>
-      void this.session.attempt(async () => void await this.services.jobs.start(verb.verb, given)));
+    const form = new VerbForm(verb, files, (asked) =>
+      void this.session.attempt(async () => void await this.services.jobs.start(verb.verb, asked)));
+    form.fill(given);
     this.form.replaceChildren(form.element);
     this.showReason = () => form.show(this.whyNot(verb));
     this.showReason();
