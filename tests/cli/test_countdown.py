@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 
 from greywhale.base.errors import UserError
+from greywhale.base.telling import Telling
 from greywhale.cli import countdown, entry, output
 from greywhale.protocol import schema
 from greywhale.protocol.ports import Port
@@ -90,7 +91,7 @@ class Counted:
         self._stops = stops
 
     def __call__(self, what: str, fraction: float, note: str = "") -> None: ...
-    def sums_up(self, text: str) -> None: ...
+    def tells(self, telling: Telling) -> None: ...
 
     def counts(self, left: int) -> None:
         self.told.append(left)

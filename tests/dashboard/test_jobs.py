@@ -24,6 +24,7 @@ from greywhale.files.log import read_log
 from greywhale_sim.lockstep import LockStepBench
 from tests.cli.example_log import write_log
 from tests.dashboard.shared import PATIENCE_S, Desk, Shared
+from tests.support.tellings import words, words_in
 
 
 def in_a_terminal(words: list[str], folder: Path, monkeypatch: pytest.MonkeyPatch) -> tuple[int, str]:
@@ -48,8 +49,8 @@ def test_a_verb_answers_and_fails_as_in_a_terminal(
         answer = json.loads(printed)
         assert job["exit_code"] == code
         assert (job["result"] or {"error": job["error"], "exit_code": code}) == answer
-        words = in_a_terminal(["evaluate", file], tmp_path, monkeypatch)[1]
-        assert words == (f"{job['summary']}\n" if job["summary"] else "")
+        printed = in_a_terminal(["evaluate", file], tmp_path, monkeypatch)[1]
+        assert words_in(job["telling"] or {"parts": []}) == words(printed)
     assert any(answer["error"] in line for line in job["said"])
 
 

@@ -5,12 +5,13 @@ from __future__ import annotations
 import json
 import threading
 from collections.abc import Callable
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import pytest
 from playwright.sync_api import BrowserContext, Locator, Page, expect
 
+from greywhale.base.telling import Telling
 from greywhale.board.calibrate.words import sweep_asked
 from greywhale.commission.measures import NAMES, Measures
 from greywhale.commission.motions import PARTS
@@ -19,11 +20,14 @@ from greywhale.dashboard.job import Facts
 from greywhale.dashboard.jobs import Listed
 from greywhale.files.log import read_log
 from greywhale.protocol.schema import DEFAULTS, PARAMETER_BY_NAME
+from tests.cli.example_log import write_log
 from tests.page import stage as stages
 from tests.page.barriers import DARK_AND_NARROW, LIGHT_AND_WIDE, require_no_barrier
 from tests.page.stage import PATIENCE_MS, Stage
+from tests.support.tellings import told_by_verbs, words
 from tools.support.calibrating_person import CalibratingPerson
 
+__all__ = ["told_by_verbs"]
 pytestmark = pytest.mark.slow
 
 KP = PARAMETER_BY_NAME["joint0.kp"]
@@ -101,7 +105,12 @@ def test_verbs_end_with_their_result_or_their_sentence(search: Locator, desk: Pa
     expect(result.locator("details")).not_to_have_attribute("open", "")
     identify = begin(desk, "identify", logs="first.csv")  # which needs no board
     (folder / "led.csv").write_text("time_s,leader_0,leader_1,leader_2,leader_3\n0,0,0,0,0\n1,0.2,0,0,0\n")
-    done(begin(desk, "replay", motion="led.csv", out="second.csv"))
+    replayed = done(begin(desk, "replay", motion="led.csv", out="second.csv"))
+    picture = replayed.get_by_role("img", name="Leader and follower of joint 2, wrist pitch")
+    expect(picture.locator("polyline")).to_have_count(2)
+    replayed.get_by_role("button", name="Measure how well it followed").click()
+    expect(desk.get_by_label("logs", exact=True)).to_have_value("second.csv")
+    expect(desk.get_by_role("button", name="Start evaluate")).to_be_focused()
     led = read_log(folder / "second.csv")
     assert led.leader[-1, 0] == pytest.approx(0.2, abs=0.001)
     assert set(np.diff(np.round(1000 * led.time))) == {1}
@@ -116,6 +125,30 @@ def test_verbs_end_with_their_result_or_their_sentence(search: Locator, desk: Pa
     expect(identify.get_by_label("What the verb says")).to_be_hidden()  # which is the same sentence
 
 
+# The sentences and tables of a card's result, without what stands there for its pictures and buttons.
+TOLD = """card => [...card.querySelector(".told").children].filter((one) => !one.matches("figure, .next, .beside"))
+  .map((one) => one.innerText).join("\\n")"""
+
+
+def test_a_result_says_what_a_terminal_says(
+    desk: Page, stage: Stage, tell: Callable[[Facts], None], told_by_verbs: dict[str, tuple[Telling, str]]
+) -> None:
+    for log in ("log.csv", "record.csv", "replay.csv"):  # that are drawn
+        write_log(stage.folder / log)
+    for verb, (telling, printed) in told_by_verbs.items():
+        facts = {**facts_of(f"told {verb}"), "state": "done", "result": {}, "telling": telling.as_dict()}
+        tell(cast(Facts, facts))
+        card = desk.locator(".job").filter(has=desk.get_by_role("heading", name=f"told {verb}", exact=True))
+        assert words(card.evaluate(TOLD)) == words(printed), verb
+        buttons = card.get_by_role("group", name="Next").get_by_role("button")
+        assert buttons.all_inner_texts() == [step.words for step in telling.steps], verb
+    doctor = desk.locator(".job").filter(has=desk.get_by_role("heading", name="told doctor", exact=True))
+    evaluate = desk.locator(".job").filter(has=desk.get_by_role("heading", name="told evaluate", exact=True))
+    expect(evaluate.get_by_role("columnheader", name="MSE rad²").first).to_be_visible()
+    calibration = doctor.get_by_role("row").filter(has_text="calibration")
+    expect(calibration.locator(".below code")).to_have_text("greywhale calibrate")
+
+
 def test_a_search_draws_its_curve_while_it_runs_and_each_joints_at_its_end(search: Locator, stage: Stage) -> None:
     done(search)
     assert search.evaluate("card => [...card.seen]") == ["1 curve, Best cost so far"]
@@ -125,6 +158,7 @@ def test_a_search_draws_its_curve_while_it_runs_and_each_joints_at_its_end(searc
         assert drawn is not None
         depths = [float(point.split(",")[1]) for point in drawn.split()]
         assert len(depths) == len(curve["evaluations"]) > 2
+        expect(search.get_by_role("img", name=f"Sets of joint {joint}, before and after")).to_be_visible()
         assert depths[int(np.argmin(curve["cost"]))] == max(depths), "the lower on the screen, the better"
 
 
@@ -149,7 +183,7 @@ def facts_of(verb: str) -> Facts:
     """A job that runs."""
     return {
         "kind": "job", "id": verb, "verb": verb, "arguments": {}, "state": "running", "progress": None,
-        "countdown": 0, "summary": None, "result": None, "error": None, "exit_code": None, "said": [],
+        "countdown": 0, "telling": None, "result": None, "error": None, "exit_code": None, "said": [],
     }  # fmt: skip
 
 

@@ -13,12 +13,18 @@ from greywhale.arm import ArmParameters
 from greywhale.base.types import Controllers
 from greywhale.files.arm import default_arm
 from greywhale.files.model import sealed, to_toml
+from greywhale.files.trajectory import Trajectory
 from greywhale.identify.space import KINDS, Space
+from greywhale.loop import default_controller
 from greywhale.measure import Evaluation
 from greywhale.measure.evaluate import JointMeasures
 from greywhale.protocol.firmware import JOINTS
 from greywhale.tune import TuningResult
-from greywhale.tune.model import Model
+from greywhale.tune.judge.floor import Floor
+from greywhale.tune.judge.held_out import HeldOut
+from greywhale.tune.judge.margins import Margin
+from greywhale.tune.model import Model, load_model
+from greywhale.tune.result import Curve
 
 SEARCHED = ("alpha", "inertia", "damping", "coulomb")
 
@@ -102,6 +108,33 @@ def tuned(model: Model, before: Controllers, after: Controllers, **changes: Any)
         notes=(),
     )
     return replace(plain, **changes)
+
+
+def judged(path: Path) -> TuningResult:
+    """A tuning that nobody ran, on two held-out motions, one of which saturates nothing."""
+    model = load_model(path, force=True, samples=2)
+    after = default_controller()
+    after[2, 8] += 1
+    motion, rows = Trajectory(np.array([0.0, 1.0]), np.zeros((2, 4))), np.zeros((1, 4))
+    floors = [
+        Floor(np.full(4, mse), np.full(4, bound), rows[:, 0], rows, rows)
+        for mse, bound in ((0.002, 0.002), (1e-7, 6e-8))
+    ]
+    held = [
+        HeldOut(name, motion, evaluation(0.01), evaluation(0.002468), floor, rows[:, 0], rows, rows, rows)
+        for name, floor in zip(("steps", "reaches"), floors, strict=True)
+    ]
+    margins = [Margin("at rest", joint, 0, 0.0, 0, 2) for joint in (1, 0, 2, 3)]
+    return tuned(
+        model,
+        default_controller(),
+        after,
+        curves=(Curve((10,), (0.1,)),) * 4,
+        margins_before=tuple(margins),
+        margins=tuple(margins),
+        held_out=tuple(held),
+        notes=("a note",),
+    )
 
 
 def evaluation(mse: float) -> Evaluation:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import TypedDict
 
 from greywhale.adapt.decide import Outcome, TriedSet
+from greywhale.base.telling import Part, Sentences, Telling
 from greywhale.base.types import Crc
 from greywhale.protocol.table import ParameterTable
 
@@ -73,15 +74,20 @@ class AdaptationResult:
             "note": self.note,
         }
 
-    def text(self) -> str:
-        lines = [f"{self.seconds:.0f} s of work, searches: {self.searches}, sets on trial: {len(self.trials)}."]
-        lines += [f"  at {one.begun_s:.0f} s: {say(one)}" for one in self.trials]
+    def tell(self) -> list[Part]:
+        """The result for people."""
+        work = f"{self.seconds:.0f} s of work, searches: {self.searches}, sets on trial: {len(self.trials)}."
+        lines = []
         if self.note:
             lines.append(f"At the end: {self.note}.")
         if self.changes:
             lines.append(f"A change of sets made an error grow by {1e3 * self.bump_rad:.1f} mrad at most.")
         lines.append(self._ending())
-        return "\n".join(lines)
+        trials = [f"at {one.begun_s:.0f} s: {say(one)}" for one in self.trials]
+        return [Sentences([work]), Sentences(trials, listed=True, near=True), Sentences(lines, near=True)]
+
+    def text(self) -> str:
+        return Telling(self.tell()).text()
 
     def _ending(self) -> str:
         if not self.improved:

@@ -11,6 +11,7 @@ import click
 from greywhale.base.errors import MOST_SEED
 from greywhale.base.formats.whole import refuse_inputs
 from greywhale.base.study import LocalWorkers
+from greywhale.base.telling import Step, Telling
 from greywhale.cli.countdown import warn_page
 from greywhale.cli.output import FILE, json_option, option, overwrite_option, port_option, progress, show, tell
 from greywhale.files.outputs import require_new
@@ -73,7 +74,8 @@ def command(
     if outcome.improved and (store or (not as_json and _agrees(outcome))):
         outcome = store_kept(request.port, outcome)
     answer: AdaptAnswer = {"port": request.port, **outcome.as_dict(), "out": str(out) if outcome.improved else None}
-    show(as_json, answer, outcome.text())
+    upload = Step("upload", "Store the controllers that were kept", {"controller": str(out)})
+    show(as_json, answer, Telling(outcome.tell(), [upload] if outcome.improved and not outcome.stored else []))
 
 
 def _agrees(outcome: AdaptationResult) -> bool:

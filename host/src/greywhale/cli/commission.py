@@ -8,6 +8,7 @@ from typing import Any
 import click
 
 from greywhale.base.errors import MOST_SEED, MOST_WORKERS, BadUsage
+from greywhale.base.telling import Sentences, Step, Telling
 from greywhale.board.session import Session
 from greywhale.cli import completion
 from greywhale.cli.countdown import prepare_motion, yes_option
@@ -80,4 +81,7 @@ def command(
             outcome = commission(request, report)
     page = save_page(outcome, out / "report.html")
     answer: CommissionAnswer = {"port": request.port, **outcome.as_dict(), "report": str(page)}
-    show(as_json, answer, f"{outcome.text()}\n\nWritten: {page}")
+    made = out / f"model-{len(outcome.rounds)}.toml"
+    given = {"model": str(made if made.exists() else options["model"])}  # one that it began with may be the only one
+    steps = [Step("adapt", "Keep the controllers right while you work", given)] if outcome.improved else []
+    show(as_json, answer, Telling([*outcome.tell(), Sentences([f"Written: {page}"])], steps))

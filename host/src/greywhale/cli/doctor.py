@@ -7,6 +7,7 @@ from pathlib import Path
 import click
 
 from greywhale.base.errors import BadUsage, counted
+from greywhale.base.telling import Column, Row, Sentences, Step, Table, Telling
 from greywhale.board.doctor import Finding, Verdict, examine, worst
 from greywhale.board.doctor.examine import LINK_S
 from greywhale.cli.output import FILE, OnPort, json_option, option, port_option, progress, show
@@ -14,7 +15,7 @@ from greywhale.protocol.ports import choose_port
 
 LONGEST_S = 3600.0  # of the look at the link
 SUPPLY_V = (1.0, 60.0)  # of motors that an Arduino drives
-INDENT_COLUMNS = 21  # of what is said, behind verdict and check
+_COLUMNS = (Column(width=5, left=True), Column(width=14, left=True), Column(width=1, left=True))
 
 
 class DoctorAnswer(OnPort):
@@ -58,14 +59,18 @@ def command(
         findings = examine(chosen, params, seconds, supply, image, hex_file, report)
     verdict = worst(findings)
     answer: DoctorAnswer = {"port": chosen, "verdict": verdict, "findings": findings}
-    show(as_json, answer, "\n".join([*map(_line, findings), "", _summary(findings)]), hang=INDENT_COLUMNS)
+    rows = [Row((one.verdict.value, one.check, one.says), below=one.remedy) for one in findings]
+    show(as_json, answer, Telling((Table(_COLUMNS, rows), Sentences((_summary(findings),))), _next(verdict, findings)))
     context.exit(int(verdict is Verdict.BAD))
 
 
-def _line(one: Finding) -> str:
-    head = f"{one.verdict.value:<5} {one.check:<14} "
-    remedy = f"\n{'':<{INDENT_COLUMNS}}-> {one.remedy}" if one.remedy else ""
-    return f"{head}{one.says}{remedy}"
+def _next(verdict: Verdict, findings: list[Finding]) -> list[Step]:
+    """Look again at what was mended, calibrate what is not, or let the arm be learnt."""
+    if verdict is Verdict.BAD:
+        return [Step("doctor", "Look again")]
+    if any(one.check == "calibration" and one.verdict is not Verdict.GOOD for one in findings):
+        return [Step("calibrate", "Calibrate the potentiometers")]
+    return [Step("commission", "Find and prove controllers on this arm")]
 
 
 def _summary(findings: list[Finding]) -> str:

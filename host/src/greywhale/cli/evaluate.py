@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
 from typing import NotRequired, TypedDict
 
@@ -9,6 +10,7 @@ import click
 
 from greywhale.base.errors import counted
 from greywhale.base.formats.whole import refuse_inputs
+from greywhale.base.telling import Column, Motions, Part, Row, Sentences, Step, Table, Telling
 from greywhale.cli.output import FILE, json_option, option, overwrite_option, show
 from greywhale.files.log import Log, read_log
 from greywhale.files.log.check import Check
@@ -16,11 +18,21 @@ from greywhale.files.log.condition import Gap
 from greywhale.files.log.driven import tell_powerless
 from greywhale.files.outputs import require_new
 from greywhale.measure import Evaluation, evaluate
-from greywhale.measure.evaluate import EvaluationFacts
+from greywhale.measure.evaluate import EvaluationFacts, JointMeasures
 from greywhale.pictures.kinds import kind_of
 from greywhale.protocol.joints import named, unused
 
-_WIDTHS = (10, 13, 11, 8, 10, 11, 10)  # of the table's columns behind the first
+# They stand within 80 columns.
+_COLUMNS = (
+    Column("", width=7, left=True),
+    Column("MSE\n", "rad²", 9),
+    Column("steady-state\nerror", "rad", 12),
+    Column("settling\nerr.", "rad", 10),
+    Column("delay\n", "s", 7),
+    Column("onset\ndelay", "s", 9),
+    Column("overshoot\n", "%", 10),
+    Column("settling\ntime", "s", 9),
+)
 
 
 class LogFacts(EvaluationFacts):
@@ -78,13 +90,15 @@ def command(logs: tuple[Path, ...], picture: Path | None, overwrite: bool, as_js
         }
         for log, evaluation, remarks in zip(read, evaluations, warnings, strict=True)
     ]
-    text = "\n\n".join(map(_text, read, evaluations, warnings))
+    parts = [part for one in zip(read, evaluations, warnings, strict=True) for part in _tell(*one)]
     answer: EvaluateAnswer = {"logs": results}
     if picture is not None:
         _draw(picture, read)
         answer["picture"] = str(picture)
-        text += f"\n\nPicture: {picture}"
-    show(as_json, answer, text)
+        parts.append(Sentences([f"Picture: {picture}"]))
+    followed = [log.name for log, evaluation in zip(read, evaluations, strict=True) if evaluation.following]
+    steps = [Step("identify", "Find the arm that made this", {"logs": followed})] if followed else []
+    show(as_json, answer, Telling(parts, steps))
 
 
 def _draw(picture: Path, logs: list[Log]) -> None:
@@ -96,7 +110,7 @@ def _draw(picture: Path, logs: list[Log]) -> None:
     draw_following(picture, [trace(*one) for one in zip(logs, names, strict=True)], "Leader and follower")
 
 
-def _text(log: Log, evaluation: Evaluation, warnings: list[str]) -> str:
+def _tell(log: Log, evaluation: Evaluation, warnings: list[str]) -> Iterator[Part]:
     notes = [f"{counted(evaluation.samples, 'sample')}, {_covered(evaluation)}"]
     if log.dropped:
         notes.append(f"{log.dropped} dropped")
@@ -104,30 +118,24 @@ def _text(log: Log, evaluation: Evaluation, warnings: list[str]) -> str:
         notes.append("recording interrupted" + (f" ({log.ended_by.rstrip('.')})" if log.ended_by else ""))
     if not evaluation.following:
         notes.append("the motors never followed; the whole log is measured")
-    lines = [
-        f"{log.name}: {', '.join(notes)}",
-        _row("", "MSE", "steady-state", "settling", "delay", "onset", "overshoot", "settling"),
-        _row("", "[rad²]", "error [rad]", "err. [rad]", "[s]", "delay [s]", "[%]", "time [s]"),
-    ]
-    for number in evaluation.joints_in_use:
-        joint = evaluation.joints[number]
-        errors = f"{joint.mse:.6f}", _number(joint.steady_state_error), _number(joint.settling_error)
-        delays = _number(joint.delay_s), _number(joint.onset_delay_s)
-        steps = _number(joint.overshoot_percent, ".1f"), joint.settling(".3f") or "n/a"
-        lines.append(_row(f"joint {number}", *errors, *delays, *steps))
-    lines.append(_row("total", f"{evaluation.total_mse:.6f}"))
+    yield Sentences([f"{log.name}: {', '.join(notes)}"])
+    rows = [_row(number, evaluation.joints[number]) for number in evaluation.joints_in_use]
+    yield Table(_COLUMNS, [*rows, Row(["total", f"{evaluation.total_mse:.6f}"])], near=True)
     ripples = [evaluation.joints[number].ripple_v for number in evaluation.joints_in_use]
+    lines = []
     if None not in ripples:
         lines.append(f"Ripple of the voltage above 20 Hz, V rms: {', '.join(f'{volts:.2f}' for volts in ripples)}")
     idle = unused(evaluation.joints_in_use)
     if idle:
         lines.append(f"{named(idle).capitalize()} {'is' if len(idle) == 1 else 'are'} not in use.")
-    lines += [
+    yield Sentences(lines, near=True)
+    lost = [
         f"Joint {number} does not follow its leader at all: check its potentiometers, its motor and their signs."
         for number, joint in enumerate(evaluation.joints)
         if evaluation.following and not joint.follows
     ]
-    return "\n".join([*lines, *(f"Warning: {one}" for one in warnings)])
+    yield Sentences([*lost, *(f"Warning: {one}" for one in warnings)], grave=True, near=True)
+    yield Motions({"follower": log.name})
 
 
 def _covered(evaluation: Evaluation) -> str:
@@ -136,9 +144,11 @@ def _covered(evaluation: Evaluation) -> str:
     return measured if measured == span else f"{measured} of the log's {span}"
 
 
-def _row(name: str, *cells: str) -> str:
-    """A line of the table, within 80 columns."""
-    return f"{name:7}" + "".join(f"{cell:>{width}}" for cell, width in zip(cells, _WIDTHS, strict=False))
+def _row(number: int, joint: JointMeasures) -> Row:
+    errors = f"{joint.mse:.6f}", _number(joint.steady_state_error), _number(joint.settling_error)
+    delays = _number(joint.delay_s), _number(joint.onset_delay_s)
+    steps = _number(joint.overshoot_percent, ".1f"), joint.settling(".3f") or "n/a"
+    return Row([f"joint {number}", *errors, *delays, *steps])
 
 
 def _number(value: float | None, form: str = ".4f") -> str:

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import click
 
+from greywhale.base.telling import Step, told
 from greywhale.base.types import Crc
 from greywhale.board.device import version
 from greywhale.board.flash import BOARDS, flash
@@ -43,4 +44,5 @@ def command(board: str | None, firmware: Path | None, hex_file: Path | None, por
         "firmware": version(hello),
         "parameter_crc": f"0x{hello.param_crc:04x}",
     }
-    show(as_json, answer, f"{chosen}: greywhale firmware {version(hello)} runs on the {hello.board.description}.")
+    sentence = f"{chosen}: greywhale firmware {version(hello)} runs on the {hello.board.description}."
+    show(as_json, answer, told(sentence, steps=[Step("doctor", "Look at the set-up")]))

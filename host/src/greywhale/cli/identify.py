@@ -8,6 +8,7 @@ import click
 
 from greywhale.base.errors import MOST_SEED
 from greywhale.base.formats.whole import refuse_inputs
+from greywhale.base.telling import Sentences, Step, Telling
 from greywhale.cli import completion
 from greywhale.cli.output import FILE, json_option, option, overwrite_option, progress, show
 from greywhale.files.arm import load_arm
@@ -16,7 +17,7 @@ from greywhale.files.log.selection import MOST_USED_S, informative
 from greywhale.files.outputs import require_folder, require_new, require_no_files
 from greywhale.files.parameter_file import load_table
 from greywhale.identify import METHODS, identify
-from greywhale.identify.result import ResultFacts
+from greywhale.identify.result import IdentificationResult, ResultFacts
 
 
 class IdentifyAnswer(ResultFacts):
@@ -94,9 +95,17 @@ def command(
         from greywhale.identify.pictures import draw
 
         files += draw(outcome, pictures)
-    written = "\n\nWritten: " + ", ".join(str(path) for path in files)
     answer: IdentifyAnswer = {**outcome.as_dict(), "files": [str(path) for path in files], "notes": notes}
-    show(as_json, answer, "\n".join([*notes, outcome.text() + written]))
+    written = Sentences(["Written: " + ", ".join(map(str, files))])
+    show(as_json, answer, Telling([Sentences(notes), *outcome.tell(), written], _next(out, outcome)))
+
+
+def _next(out: Path, outcome: IdentificationResult) -> list[Step]:
+    """Tune on the model; where that has doubts, show the arm what it left open first."""
+    tune = Step("tune", "Tune the controllers on this model", {"model_file": str(out)})
+    more = {"excite": True, "arm_file": str(out), "out": "more.csv"}
+    record = Step("record", "Record a motion that shows what is left open", more)
+    return [record] if outcome.doubts else [tune, record] if outcome.found.open else [tune]
 
 
 def _read(path: Path, notes: list[str]) -> Log:

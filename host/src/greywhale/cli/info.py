@@ -8,6 +8,7 @@ from typing import Annotated, TypedDict
 import click
 
 from greywhale.base.errors import BadUsage, counted
+from greywhale.base.telling import Column, Row, Step, Table, Telling
 from greywhale.base.types import Crc
 from greywhale.board.device import Device
 from greywhale.board.doctor.board import EEPROM_WRITES
@@ -18,7 +19,7 @@ from greywhale.cli.output import OnPort, json_option, option, port_option, show
 from greywhale.protocol import schema
 from greywhale.protocol.ports import choose_port
 
-VALUE_COLUMN = 15  # where a row's value begins
+_COLUMNS = (Column(width=14, left=True), Column(width=1, left=True))
 
 
 class PotFacts(TypedDict):
@@ -78,7 +79,7 @@ def command(watch: bool, seconds: float | None, port: str | None, as_json: bool)
     with Device(choose_port(port), restart=False) as device:
         hello, status = device.hello, device.status()
         pots = read_pots(device, read_parameters(device)) if status.state in _MOTORS_OFF else None
-    show(as_json, _facts(device, hello, status, pots), _text(device, hello, status, pots), hang=VALUE_COLUMN)
+    show(as_json, _facts(device, hello, status, pots), _tell(device, hello, status, pots))
 
 
 def _watch(port: str | None, seconds: float | None) -> None:
@@ -133,7 +134,7 @@ def _pot_facts(pots: PotReadings, number: int) -> PotFacts:
 _MOTORS_OFF = (schema.State.DISABLED, schema.State.FAULT)
 
 
-def _text(device: Device, hello: schema.HelloReply, status: schema.StatusReply, pots: PotReadings | None) -> str:
+def _tell(device: Device, hello: schema.HelloReply, status: schema.StatusReply, pots: PotReadings | None) -> Telling:
     rows = [
         ("board", f"{hello.board.description} on {device.port}"),
         ("firmware", f"{device.firmware_version}, protocol {hello.protocol}, schema {hello.schema_hash:#010x}"),
@@ -154,7 +155,7 @@ def _text(device: Device, hello: schema.HelloReply, status: schema.StatusReply, 
         ("saves", f"{status.saves:,}; the EEPROM is made for {EEPROM_WRITES:,}"),
         *(("pots", line) for line in _tell_pots(pots)),
     ]
-    return "\n".join(f"{name:<{VALUE_COLUMN}}{value}" for name, value in rows)
+    return Telling((Table(_COLUMNS, [Row(row) for row in rows]),), [Step("doctor", "Look at what may be wrong")])
 
 
 def _source(hello: schema.HelloReply, status: schema.StatusReply) -> str:

@@ -13,6 +13,7 @@ import os
 import socket
 import sys
 
+from greywhale.base.telling import Telling
 from greywhale.cli import entry, output
 from greywhale.protocol.lent_line import lend
 
@@ -37,8 +38,8 @@ class Reporter:
     def counts(self, left: int) -> None:
         self._tell(countdown=left)
 
-    def sums_up(self, text: str) -> None:
-        self._tell(summary=text)
+    def tells(self, telling: Telling) -> None:
+        self._tell(telling=telling.as_dict())
 
     def _tell(self, **facts: object) -> None:
         with contextlib.suppress(OSError):  # whoever watched has gone; the work goes on

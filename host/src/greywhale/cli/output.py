@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import json
 import logging
+import shlex
 import sys
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -14,6 +15,7 @@ from typing import Any, Protocol, TypedDict, TypeVar
 import click
 
 from greywhale.base.errors import MOST_WORKERS, printable
+from greywhale.base.telling import Step, Telling, told
 from greywhale.base.types import NotedProgress, show_no_progress
 from greywhale.cli import completion, tracing
 from greywhale.cli.wrapping import fit
@@ -41,8 +43,8 @@ class Watcher(NotedProgress, Protocol):
     def counts(self, left: int) -> None:
         """The arm moves in so many seconds; 0: it is no longer counted."""
 
-    def sums_up(self, text: str) -> None:
-        """The result in the terminal's words."""
+    def tells(self, telling: Telling) -> None:
+        """The result for people, of which the terminal makes text."""
 
 
 watcher: Watcher | None = None
@@ -85,17 +87,40 @@ def workers_options(*names: str) -> Callable[[Command], Command]:
     return lambda command: workers(scheduler(command))
 
 
-def show(as_json: bool, result: Mapping[str, object], text: str, hang: int = 0) -> None:
-    """Print the result of a verb: for programs or for people. `hang` indents what is broken off a long line.
-
-    A page gets both.
-    """
+def show(as_json: bool, result: Mapping[str, object], telling: Telling | str) -> None:
+    """Print the result of a verb: for programs or for people. A page gets both."""
+    if isinstance(telling, str):
+        telling = told(*telling.split("\n"))
     if watcher is not None:
-        watcher.sums_up(printable(text))
+        watcher.tells(telling)
     if as_json:
         click.echo(json_of(result))
     else:
-        click.echo(fit(printable(text), sys.stdout, hang))
+        # A pipe gets the result alone.
+        steps = [(f"Next: {command_of(step)}", 0) for step in telling.steps] if sys.stdout.isatty() else []
+        click.echo("\n".join(fit(printable(line), sys.stdout, hang) for line, hang in [*telling.lines(), *steps]))
+
+
+def command_of(step: Step) -> str:
+    """The step as one types it."""
+    command: click.Command = click.get_current_context().find_root().command
+    for word in step.verb.split():
+        found = command.get_command(click.Context(command), word) if isinstance(command, click.Group) else None
+        assert found is not None, step.verb
+        command = found
+    options: list[str] = []
+    places: list[str] = []
+    for parameter in command.params:
+        given = step.given.get(parameter.name or "")
+        if given is None:
+            continue
+        texts = [str(one) for one in (given if isinstance(given, list | tuple) else [given])]
+        if isinstance(parameter, click.Option):
+            name = max(parameter.opts, key=len)
+            options += [name] if parameter.is_flag else [word for text in texts for word in (name, text)]
+        else:
+            places += texts
+    return f"greywhale {step.verb} {shlex.join([*places, *options])}".rstrip()
 
 
 def tell(text: str) -> None:

@@ -13,6 +13,7 @@ import click
 
 from greywhale.base.errors import BadUsage, UserError, counted, cut
 from greywhale.base.formats.units import read_number, unit_of
+from greywhale.base.telling import Column, Part, Row, Sentences, Step, Table, Telling, told
 from greywhale.base.types import Crc
 from greywhale.board.device import Device
 from greywhale.board.upload import UploadFacts, change_parameters, read_parameters
@@ -31,6 +32,9 @@ from greywhale.protocol.table import ParameterTable, physical
 DEFAULTS = "defaults"
 MISSING = ("board", DEFAULTS)  # what parameters become that a file does not state
 MOST_NAMED = 8  # parameters in a sentence
+_NAME, _UNIT = Column("parameter", width=16, left=True), Column("unit", width=1, left=True)
+_VALUES = (Column(width=16, left=True), Column(width=12), Column(width=1, left=True))
+_BESIDE = (_NAME, Column("board", width=12), Column("file", width=12), _UNIT)
 
 
 class ParamsGetAnswer(OnPort):
@@ -83,9 +87,9 @@ def get(names: tuple[str, ...], port: str | None, as_json: bool) -> None:
     with Device(choose_port(port)) as device, progress(brief=True) as report:
         table = read_parameters(device, report)
     facts = {parameter.name: physical(parameter, table[parameter.name]) for parameter in wanted}
-    lines = [f"{name:<16} {value:>12g} {schema.PARAMETER_BY_NAME[name].unit}" for name, value in facts.items()]
+    rows = [Row((name, f"{value:g}", schema.PARAMETER_BY_NAME[name].unit)) for name, value in facts.items()]
     answer: ParamsGetAnswer = {"port": device.port, "parameters": facts}
-    show(as_json, answer, "\n".join(line.rstrip() for line in lines))
+    show(as_json, answer, Telling((Table(_VALUES, rows),)))
 
 
 @command.command("set")
@@ -122,7 +126,8 @@ def backup(file: Path, port: str | None, overwrite: bool, as_json: bool) -> None
         table = read_parameters(device, report)
     parameter_file.save(file, table)
     answer: ParamsBackupAnswer = {"port": device.port, "file": str(file), "parameter_crc": f"0x{table.crc:04x}"}
-    show(as_json, answer, f"{file}: {len(table.raw)} parameters, CRC {table.crc:#06x}.")
+    compare = Step("params diff", "Compare the board with this file", {"file": str(file)})
+    show(as_json, answer, told(f"{file}: {len(table.raw)} parameters, CRC {table.crc:#06x}.", steps=[compare]))
 
 
 @command.command("restore")
@@ -161,7 +166,7 @@ def restore(file: Path, missing: str | None, port: str | None, as_json: bool) ->
         lines.append(
             f"{file} is older and does not state these; they keep the board's values: {_named(running, kept)}."
         )
-    show(as_json, answer, "\n".join(lines))
+    show(as_json, answer, told(*lines, steps=[Step("doctor", "Look at the set-up")]))
 
 
 @command.command("diff")
@@ -183,9 +188,7 @@ def diff(file: Path, port: str | None, as_json: bool) -> None:
         for one in schema.PARAMETERS
         if one.name in differ
     }
-    lines = [_difference(name, both) for name, both in differences.items()]
-    if not lines:
-        lines.append(f"{device.port} and {file} hold the same parameters.")
+    lines = [] if differences else [f"{device.port} and {file} hold the same parameters."]
     if silent:
         lines.append(
             f"{file} is older and does not state {counted(len(silent), 'parameter')}; the others are compared."
@@ -196,12 +199,16 @@ def diff(file: Path, port: str | None, as_json: bool) -> None:
         "differences": differences,
         "not_in_file": list(silent),
     }
-    show(as_json, answer, "\n".join(lines))
+    rows = [_difference(name, both) for name, both in differences.items()]
+    parts: list[Part] = [Table(_BESIDE, rows)] if rows else []
+    parts.append(Sentences(lines, near=True))
+    restore = Step("params restore", "Give the board what the file says", {"file": str(file)})
+    show(as_json, answer, Telling(parts, [restore] if rows else []))
 
 
-def _difference(name: str, both: Difference) -> str:
-    file = "not in the file" if both["file"] is None else f"file {both['file']:g}"
-    return f"{name:<16} board {both['board']:g}, {file}"
+def _difference(name: str, both: Difference) -> Row:
+    file = "not there" if both["file"] is None else f"{both['file']:g}"
+    return Row((name, f"{both['board']:g}", file, schema.PARAMETER_BY_NAME[name].unit))
 
 
 def _not_default(table: ParameterTable, names: Sequence[str]) -> list[str]:

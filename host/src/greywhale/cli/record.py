@@ -12,6 +12,7 @@ import click
 
 from greywhale.base.errors import MOST_SEED, BadUsage, counted
 from greywhale.base.formats.whole import refuse_inputs
+from greywhale.base.telling import Motions, Sentences, Step, Telling
 from greywhale.board.device import Device
 from greywhale.board.pots import FOLLOWERS, require_good_pots
 from greywhale.board.reconnect import record_through_losses
@@ -158,7 +159,7 @@ def command(
                     warn_page()
                 recorded = record(device, out, length, every, enable, report, disengaged)
         answer: RecordAnswer = {"port": chosen, **recorded.as_dict()}
-        show(as_json, answer, describe(chosen, recorded))
+        show(as_json, answer, tell_recording(chosen, recorded, followed=enable))
         return
     if enable:
         raise BadUsage("--excite turns the motors on by itself; leave --enable out.")
@@ -183,7 +184,7 @@ def command(
             recording = record_led(device, out, designed.motion, every, report, running)
     saved: Saved = {} if save_motion is None else {"motion": str(save_motion)}
     result: RecordExciteAnswer = {"port": device.port, **recording.as_dict(), "design": _facts(designed), **saved}
-    show(as_json, result, f"{describe(chosen, recording)}\n{designed.text()}")
+    show(as_json, result, tell_recording(chosen, recording, designed.text()))
 
 
 def _facts(designed: Design) -> DesignFacts:
@@ -228,6 +229,17 @@ def _naming_every() -> Iterator[None]:
     except LeaseLostError as late:
         late.add_note("Or use a larger --every: 50 makes the lease a second.")
         raise
+
+
+def tell_recording(port: str, recording: Recording, *more: str, followed: bool = True) -> Telling:
+    """A recording in sentences and as a picture; only one that followed tells about the arm."""
+    log = str(recording.path)
+    steps = [
+        Step("identify", "Find the arm that made this log", {"logs": [log]}),
+        Step("evaluate", "Measure how well it followed", {"logs": [log]}),
+    ]
+    parts = (Sentences((describe(port, recording), *more)), Motions({"follower": log}))
+    return Telling(parts, steps if followed else ())
 
 
 def describe(port: str, recording: Recording) -> str:

@@ -12,7 +12,7 @@ from greywhale.board.device import Device
 from greywhale.board.record import LedRecordingFacts, check_every_led, record_led
 from greywhale.cli.countdown import prepare_motion, yes_option
 from greywhale.cli.output import FILE, OnPort, json_option, option, overwrite_option, port_option, progress, show, warn
-from greywhale.cli.record import describe
+from greywhale.cli.record import tell_recording
 from greywhale.files.leader import load_leader
 from greywhale.files.names import suggesting
 from greywhale.files.outputs import require_new
@@ -67,4 +67,4 @@ def command(motion: Path, out: Path, every: int, overwrite: bool, yes: bool, por
         "warnings": list(trajectory.remarks),
         **recording.as_dict(),
     }
-    show(as_json, answer, describe(chosen, recording))
+    show(as_json, answer, tell_recording(chosen, recording))

@@ -10,6 +10,7 @@ import click
 
 from greywhale.base.errors import MOST_WORKERS, BadUsage, require_within
 from greywhale.base.formats.whole import refuse_inputs
+from greywhale.base.telling import Sentences, Step, Telling
 from greywhale.cli import completion
 from greywhale.cli.output import FILE, json_option, option, overwrite_option, progress, show
 from greywhale.files import controller as controller_file
@@ -19,7 +20,7 @@ from greywhale.tune import METHODS, STRATEGIES, check_request, tune
 from greywhale.tune.limits import TUNING_LIMITS
 from greywhale.tune.model import SAMPLES, load_model
 from greywhale.tune.report.controller_file import save
-from greywhale.tune.report.summary import summary
+from greywhale.tune.report.summary import tell
 from greywhale.tune.report.tables import TableFacts, tables_of
 from greywhale.tune.result import TuningFacts
 from greywhale.tune.search.space import NAMES
@@ -148,7 +149,8 @@ def command(
 
         files += draw(outcome, pictures)
     layouts = tables_of(outcome, paper=True) if tables else ()
-    texts = [summary(outcome), *(table.text() for table in layouts), "Written: " + ", ".join(map(str, files))]
+    told = [*tell(outcome), *(part for table in layouts for part in table.tell())]
+    told.append(Sentences(["Written: " + ", ".join(map(str, files))]))
     shown: Layouts = {"tables": [table.as_dict() for table in layouts]} if tables else {}
     answer: TuneAnswer = {
         **outcome.as_dict(),
@@ -156,7 +158,9 @@ def command(
         "files": [str(path) for path in files],
         **shown,
     }
-    show(as_json, answer, "\n\n".join(texts))
+    upload = Step("upload", "Give the board these controllers", {"controller": str(out)})
+    prove = Step("commission", "Prove controllers on the arm itself, from this model on", {"model": model_file})
+    show(as_json, answer, Telling(told, [upload, prove]))
 
 
 def _bounds(given: tuple[str, ...]) -> dict[str, tuple[float, float]]:

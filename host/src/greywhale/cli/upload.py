@@ -11,6 +11,7 @@ from typing import Any
 import click
 
 from greywhale.base.errors import UserError, counted
+from greywhale.base.telling import Step, told
 from greywhale.board.device import Device
 from greywhale.board.upload import UploadFacts, change_parameters, read_parameters
 from greywhale.cli import completion
@@ -21,6 +22,7 @@ from greywhale.protocol.ports import choose_port
 from greywhale.protocol.table import ParameterTable
 
 MOST_NAMED = 3  # margins in the warning
+_RECORD = Step("record", "Record how the arm follows now", {"enable": True, "out": "following.csv"})
 
 
 class UploadAnswer(OnPort, UploadFacts):
@@ -64,7 +66,7 @@ def command(controller: Path, yes: bool, port: str | None, as_json: bool) -> Non
         **uploaded.as_dict(),
     }
     text = f"{controller} runs and is stored on {device.port}: {what}, parameter CRC {uploaded.param_crc:#06x}."
-    show(as_json, answer, text)
+    show(as_json, answer, told(text, steps=[_RECORD]))
 
 
 def _warnings(tuning: Mapping[str, Any], table: ParameterTable) -> list[str]:

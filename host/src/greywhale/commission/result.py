@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import TypedDict
 
@@ -10,6 +10,7 @@ import numpy as np
 
 from greywhale.arm.parameters import JOINT_NAMES, ArmParameters
 from greywhale.base.errors import counted
+from greywhale.base.telling import Column, Motions, Part, Row, Sentences, Table, Telling
 from greywhale.base.types import Crc
 from greywhale.commission.learn import LearntController
 from greywhale.commission.measures import Measures, PartFacts, measure
@@ -125,45 +126,49 @@ class CommissioningResult:
         same = (self.best.rows == self.trials.before.rows).all(axis=1)
         return [joint for joint in self.trials.table.joints_in_use if same[joint]]
 
-    def text(self) -> str:
-        """Tell people what changed on the arm, joint by joint."""
-        before, after = self.trials.before.measured, self.best.measured
+    def tell(self) -> list[Part]:
+        """The result for people: the set that the board has, and what changed on the arm, joint by joint."""
         played = len(self.trials.done) - 1
-        lines = [
-            self.headline,
-            f"{counted(played, 'set')} of controllers tried on the arm in {counted(len(self.rounds), 'round')}.",
-        ]
-        if not self.improved:
-            return "\n".join(lines)
+        tried = f"{counted(played, 'set')} of controllers tried on the arm in {counted(len(self.rounds), 'round')}."
+        return [Sentences([self.headline, tried]), *(self._tell_changes() if self.improved else ())]
+
+    def text(self) -> str:
+        return Telling(self.tell()).text()
+
+    def _tell_changes(self) -> Iterator[Part]:
+        before, after = self.trials.before.measured, self.best.measured
         joints = self.trials.table.joints_in_use
+        columns = (
+            Column("", width=14, left=True),
+            *(Column(f"joint {one}\n{JOINT_NAMES[one]}", width=15) for one in joints),
+        )
         pairs = [(part, before.error[place] ** 0.5, after.error[place] ** 0.5) for place, part in enumerate(PARTS)]
         pairs.append(("unrest at rest", before.worst("unrest"), after.worst("unrest")))
-        lines += ["", "On the arm (mrad rms), before -> after: the error in each part, and the unrest.", ""]
-        lines += [_row("", [f"joint {joint}" for joint in joints]), _row("", [JOINT_NAMES[joint] for joint in joints])]
-        for name, was, now in pairs:
-            lines.append(_row(name, [f"{1e3 * was[joint]:.1f} -> {1e3 * now[joint]:.1f}" for joint in joints]))
-        lines += [
-            "",
-            "In the moves: overshoot (% of the step), and settling time to within 5 % (s).",
-            "At rest: the voltage above 20 Hz, which one hears (V rms).",
-            "",
+        errors = [
+            Row((name, *(f"{1e3 * was[joint]:.1f} -> {1e3 * now[joint]:.1f}" for joint in joints)))
+            for name, was, now in pairs
         ]
+        yield Sentences(["On the arm (mrad rms), before -> after: the error in each part, and the unrest."])
+        yield Table(columns, errors)
+        yield Sentences(
+            [
+                "In the moves: overshoot (% of the step), and settling time to within 5 % (s).",
+                "At rest: the voltage above 20 Hz, which one hears (V rms).",
+            ]
+        )
+        rest = []
         for name, form in (("overshoot", ".0f"), ("settling", ".2f"), ("ripple", ".2f")):
             was, now = before.worst(name), after.worst(name)
-            lines.append(
-                _row(name, [f"{number_text(was[joint], form)} -> {number_text(now[joint], form)}" for joint in joints])
-            )
+            cells = (f"{number_text(was[joint], form)} -> {number_text(now[joint], form)}" for joint in joints)
+            rest.append(Row((name, *cells)))
+        yield Table(columns, rest)
         notes = [
             f"Joint {joint} ({JOINT_NAMES[joint]}): {fault}. No quieter controller follows as well."
             for joint in joints
             for fault in self.best.verdicts[joint].faults
         ]
-        return "\n".join([*lines, "", *notes] if notes else lines)
-
-
-def _row(name: str, cells: Sequence[str]) -> str:
-    """A line of the table, within 80 columns."""
-    return f"{name:14}" + "".join(f"{cell:>16}" for cell in cells)
+        yield Sentences(notes, grave=True)
+        yield Motions({"before": str(self.trials.before.path), "now on the board": str(self.best.path)}, near=False)
 
 
 def number_text(value: float, form: str) -> str:

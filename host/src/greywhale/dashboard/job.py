@@ -62,7 +62,7 @@ class Facts(TypedDict):
     state: Literal["running", "done", "failed", "stopped"]
     progress: dict[str, Any] | None  # done, total, text, note
     countdown: int  # seconds until the arm moves; 0: it is not counted
-    summary: str | None  # the result as the verb prints it in a terminal, with lines of any length
+    telling: dict[str, Any] | None  # the result for people, as `base.telling` has it
     result: Any  # what the verb prints with --json
     error: str | None  # one sentence
     exit_code: int | None
@@ -85,7 +85,7 @@ class Job:
         """`program` takes two descriptors, a port and the verb's words; `board` is how the verb uses a board."""
         self.facts: Facts = {
             "kind": "job", "id": secrets.token_hex(4), "verb": verb, "arguments": arguments, "state": "running",
-            "progress": None, "countdown": 0, "summary": None, "result": None, "error": None, "exit_code": None,
+            "progress": None, "countdown": 0, "telling": None, "result": None, "error": None, "exit_code": None,
             "said": [],
         }  # fmt: skip
         self.board = board

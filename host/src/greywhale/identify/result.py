@@ -11,6 +11,7 @@ import numpy as np
 from greywhale.arm import ArmParameters
 from greywhale.arm.from_plant import arm_of
 from greywhale.base.formats.whole import write_text
+from greywhale.base.telling import Column, Part, Row, Sentences, Table, Telling
 from greywhale.base.types import Crc, Floats
 from greywhale.files.model import sealed, to_toml
 from greywhale.identify.combinations import CombinationFacts
@@ -183,48 +184,55 @@ class IdentificationResult:
         """The name of the arm that the search began with: only one that nobody identified is a white box."""
         return "white box" if self.white_box.identification is None else "model before"
 
-    def text(self) -> str:
-        """The text for people: the layout of the paper's Table 5, then what is known and what is not."""
-        lines = [] if self.complete else ["UNFINISHED: interrupted; this is the best model so far.", ""]
-        for verdict in self.verdicts:
-            lines += _table(verdict, self.begun, self.white_box.joints_in_use)
+    def tell(self) -> list[Part]:
+        """The result for people: the layout of the paper's Table 5, then what is known and what is not."""
+        unfinished = "UNFINISHED: interrupted; this is the best model so far."
+        parts: list[Part] = [] if self.complete else [Sentences([unfinished], grave=True)]
+        parts += [_table(verdict, self.begun, self.white_box.joints_in_use) for verdict in self.verdicts]
         if self.found.condition is not None:
-            for rival in self.found.rivals:
-                lines.append(f"Nearly as good: {rival.order}.")
-            lines.append(f"Model order: {self.found.order} (by held-out data).")
-            least = "at least " if self.found.condition >= LARGEST_CONDITION else ""
-            times = f"{least}{self.found.condition**0.5:,.0f}"
-            lines.append(f"Condition number of the Fisher information: {least}{self.found.condition:.2g}. So the best")
-            lines.append(f"known combination of parameters is {times} times as well known as the least known.")
-            lines += ["", f"{'parameter':18} {self.begun:>12} {'model':>11} {'std':>9}  unit"]
-            for one in self.estimates:
-                deviation = "" if one.deviation is None else f"{one.deviation:.2g}"
-                lines.append(
-                    f"{one.name:18} {one.white_box:>12.4g} {one.value:>11.4g} {deviation:>9}  {one.unit}".rstrip()
-                )
+            parts += self._tell_numbers(self.found.condition)
         if self.found.combinations:
-            lines += ["", "Better known together than one by one:"]
-            lines += [
-                f"- {one.name} = {one.value:.4g} +- {100.0 * one.deviation:.2g} %" for one in self.found.combinations
+            known = [
+                f"{one.name} = {one.value:.4g} +- {100.0 * one.deviation:.2g} %" for one in self.found.combinations
             ]
+            parts.append(Sentences(known, "Better known together than one by one", listed=True))
         if self.found.open:
-            lines += ["", "What these logs leave uncertain:", *(f"- {sentence}" for sentence in self.found.open)]
+            parts.append(Sentences(self.found.open, "What these logs leave uncertain", listed=True))
         for title, sentences in (("Warnings", self.warnings), ("Doubts", self.doubts)):
             if sentences:
-                lines += ["", f"{title}:", *(f"- {sentence}" for sentence in sentences)]
-        return "\n".join(lines)
+                parts.append(Sentences(sentences, title, listed=True, grave=True))
+        return parts
+
+    def text(self) -> str:
+        return Telling(self.tell()).text()
+
+    def _tell_numbers(self, condition: float) -> list[Part]:
+        """The searched numbers, and how well they are known."""
+        least = "at least " if condition >= LARGEST_CONDITION else ""
+        lines = [
+            *(f"Nearly as good: {rival.order}." for rival in self.found.rivals),
+            f"Model order: {self.found.order} (by held-out data).",
+            f"Condition number of the Fisher information: {least}{condition:.2g}. So the best known combination of "
+            f"parameters is {least}{condition**0.5:,.0f} times as well known as the least known.",
+        ]
+        columns = (
+            Column("parameter", width=18, left=True),
+            *(Column(self.begun, width=12), Column("model", width=11), Column("std", width=9)),
+            Column("unit", left=True),
+        )
+        rows = []
+        for one in self.estimates:
+            deviation = "" if one.deviation is None else f"{one.deviation:.2g}"
+            rows.append(Row((one.name, f"{one.white_box:.4g}", f"{one.value:.4g}", deviation, one.unit)))
+        return [Sentences(lines), Table(columns, rows)]
 
 
-def _table(verdict: LogVerdict, begun: str, joints: Joints) -> list[str]:
-    lines = [
-        f"{verdict.name} ({verdict.role}; {verdict.measure})",
-        f"{'MSE [rad²]':12} {begun:>12} {'model':>12}",
-    ]
-    for joint in joints:
-        lines.append(f"{f'joint {joint}':12} {verdict.white_box[joint]:>12.3g} {verdict.model[joint]:>12.3g}")
+def _table(verdict: LogVerdict, begun: str, joints: Joints) -> Table:
+    columns = (Column("MSE", "rad²", 12, left=True), Column(begun, width=12), Column("model", width=12))
     before, after = sum(verdict.white_box), sum(verdict.model)
-    lines.append(f"{'all joints':12} {before:>12.3g} {after:>12.3g}   {_comparison(verdict, begun)}")
-    return [*lines, ""]
+    rows = [Row((f"joint {one}", f"{verdict.white_box[one]:.3g}", f"{verdict.model[one]:.3g}")) for one in joints]
+    total = Row(("all joints", f"{before:.3g}", f"{after:.3g}"), remark=_comparison(verdict, begun))
+    return Table(columns, [*rows, total], f"{verdict.name} ({verdict.role}; {verdict.measure})")
 
 
 def _comparison(verdict: LogVerdict, begun: str) -> str:

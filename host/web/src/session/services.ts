@@ -1,5 +1,7 @@
 // The services of a host beside the board: files, predictions, verbs, a bench. Without one views hide what needs it.
 
+import type { Telling } from "./telling";
+
 export type NamedFile = { readonly name: string; readonly kind: string };
 
 export type HostState = {
@@ -84,8 +86,8 @@ export type Job = {
   readonly progress: { readonly done: number; readonly total: number; readonly text: string; readonly note: string } | null;
   /** Seconds until the arm moves; 0: it is not counted. */
   readonly countdown: number;
-  /** The result in the terminal's words; null where there is none. */
-  readonly summary: string | null;
+  /** The result for people; null where there is none. */
+  readonly telling: Telling | null;
   readonly result: Json;
   readonly error: string | null;
   readonly said: readonly string[];

@@ -1,68 +1,86 @@
-"""A tuning in a page of text: what changed, what to expect on other motions, and what speaks against it."""
+"""A tuning for people: what changed, what to expect on other motions, and what speaks against it."""
 
 from __future__ import annotations
 
 from greywhale.arm.parameters import JOINT_NAMES
+from greywhale.base.telling import Column, Part, Row, Sentences, Table, Telling
 from greywhale.measure import more_overshoot
 from greywhale.tune.judge.held_out import HeldOut
 from greywhale.tune.judge.margins import AT_REST, Margin
 from greywhale.tune.limits import TUNING_LIMITS
 from greywhale.tune.result import TuningResult
 
+_MEASURES = (
+    Column("MSE", "rad²", 18),
+    Column("x floor", width=7),
+    Column("at rest", "rad", 14),
+    Column("delay", "s", 14),
+)
+
 
 def summary(outcome: TuningResult) -> str:
     """The text for people."""
+    return Telling(tell(outcome)).text()
+
+
+def tell(outcome: TuningResult) -> list[Part]:
+    """The result for people."""
     how = f"{outcome.method}, strategy {outcome.strategy}, seed {outcome.seed}, {outcome.evaluations:,} evaluations"
-    lines = [] if outcome.complete else ["UNFINISHED: interrupted; this is the best so far.", ""]
-    lines.append(f"Tuned for {outcome.model.name} at {outcome.period_ms} ms and {outcome.supply_v:g} V: {how}.")
+    unfinished = "UNFINISHED: interrupted; this is the best so far."
+    parts: list[Part] = [] if outcome.complete else [Sentences([unfinished], grave=True)]
+    name, period, supply = outcome.model.name, outcome.period_ms, outcome.supply_v
+    parts.append(Sentences([f"Tuned for {name} at {period} ms and {supply:g} V: {how}."]))
     if outcome.held_out:
-        lines += ["", "Expected on motions that were not trained on, before -> after:"]
-    for one in outcome.held_out:
-        lines += ["", *_motion(one)]
+        parts.append(Sentences(["Expected on motions that were not trained on, before -> after:"]))
+    parts += [table for one in outcome.held_out for table in _motion(one)]
     if more := overshooting(outcome):
-        lines += ["", *more]
+        parts.append(Sentences(more, grave=True))
     if outcome.margins:
-        lines += ["", *_held(outcome), *ripples(outcome)]
+        failing = failing_margins(outcome)
+        parts.append(Sentences(failing or _held(outcome), grave=bool(failing)))
+        parts.append(Sentences(ripples(outcome), near=True))
     notes = list(outcome.notes)
     if (travel := outcome.model.travel) is not None:
-        lines += ["", f"For the board: {travel.sentence}"]
+        parts.append(Sentences([f"For the board: {travel.sentence}"]))
         notes += [travel.note] if travel.note else []
-    for title, sentences in (("Notes", notes), ("Doubts about the model", outcome.model.doubts)):
-        if sentences:
-            lines += ["", f"{title}:", *(f"- {sentence}" for sentence in sentences)]
-    return "\n".join(lines)
+    if notes:
+        parts.append(Sentences(notes, "Notes", listed=True))
+    if outcome.model.doubts:
+        parts.append(Sentences(outcome.model.doubts, "Doubts about the model", listed=True, grave=True))
+    return parts
 
 
-def _motion(one: HeldOut) -> list[str]:
-    """A line for each joint: the paper's three measures, and the error as a multiple of the least possible."""
-    lines = [f"{one.name:18} {'MSE [rad²]':>17} {'x floor':>7} {'at rest [rad]':>14} {'delay [s]':>14}"]
+def _motion(one: HeldOut) -> list[Table]:
+    """A row for each joint: the paper's three measures, and the error as a multiple of the least possible."""
+    columns = (Column(one.name, width=17, left=True), *_MEASURES)
+    rows = []
     for joint in one.before.joints_in_use:
         before, after = one.before.joints[joint], one.after.joints[joint]
-        worse = " WORSE" if after.mse > TUNING_LIMITS.choice.worse_in_report * before.mse else ""
-        lines.append(
-            f"{_joint(joint):17} {_pair(before.mse, after.mse, '.1e'):>18} {_multiple(one, joint):>7} "
-            f"{_pair(before.steady_state_error, after.steady_state_error, '.3f'):>14} "
-            f"{_pair(before.delay_s, after.delay_s, '.3f'):>14}{worse}"
+        pairs = (
+            *(_pair(before.mse, after.mse, ".1e"), _multiple(one, joint)),
+            _pair(before.steady_state_error, after.steady_state_error, ".3f"),
+            _pair(before.delay_s, after.delay_s, ".3f"),
         )
+        is_worse = after.mse > TUNING_LIMITS.choice.worse_in_report * before.mse
+        rows.append(Row((_joint(joint), *pairs), remark="WORSE" if is_worse else ""))
     before_sum, after_sum = float(one.mse_before.sum()), float(one.mse_after.sum())
     change = 100.0 * (after_sum / before_sum - 1.0)
-    lines.append(
-        f"{'all joints':17} {_pair(before_sum, after_sum, '.1e'):>18} {_multiple(one, -1):>7} "
-        f"  {abs(change):.1f} % {'lower' if change <= 0.0 else 'HIGHER'}"
-    )
-    return [*lines, *_steps(one)]
+    remark = f"{abs(change):.1f} % {'lower' if change <= 0.0 else 'HIGHER'}"
+    rows.append(Row(("all joints", _pair(before_sum, after_sum, ".1e"), _multiple(one, -1)), remark))
+    return [Table(columns, rows), *_steps(one)]
 
 
-def _steps(one: HeldOut) -> list[str]:
-    """A line for each joint that steps: overshoot and settling time."""
-    pairs = [(joint, one.before.joints[joint], one.after.joints[joint]) for joint in one.before.joints_in_use]
-    lines = [
-        f"{_joint(joint):17} {_pair(before.overshoot_percent, after.overshoot_percent, '.1f'):>18} "
-        f"{before.settling('.2f') or 'none':>14} -> {after.settling('.2f') or 'none'}"
-        for joint, before, after in pairs
-        if before.overshoot_percent is not None
-    ]
-    return [f"{'':17} {'overshoot [%]':>18} {'settling time [s]':>22}", *lines] if lines else []
+def _steps(one: HeldOut) -> list[Table]:
+    """A row for each joint that steps: overshoot and settling time."""
+    columns = (Column(width=17, left=True), Column("overshoot", "%", 18), Column("settling time", "s", 22))
+    rows = []
+    for joint in one.before.joints_in_use:
+        before, after = one.before.joints[joint], one.after.joints[joint]
+        if before.overshoot_percent is not None:
+            overshoots = _pair(before.overshoot_percent, after.overshoot_percent, ".1f")
+            times = f"{before.settling('.2f') or 'none'} -> {after.settling('.2f') or 'none'}"
+            rows.append(Row((_joint(joint), overshoots, times)))
+    return [Table(columns, rows, near=True)] if rows else []
 
 
 def _joint(joint: int) -> str:
@@ -91,9 +109,7 @@ def ripples(outcome: TuningResult) -> list[str]:
 
 
 def _held(outcome: TuningResult) -> list[str]:
-    """Say that all margins hold, or which do not; the notes say how far a joint swings."""
-    if failing := failing_margins(outcome):
-        return failing
+    """Say that all margins hold, and on what."""
     plants = outcome.margins[0].plants
     arms = f"on all {plants} plants" if plants > 1 else "on the model itself"
     scenarios = ", ".join(dict.fromkeys(margin.scenario for margin in outcome.margins))

@@ -13,6 +13,8 @@ from typing import TYPE_CHECKING, Annotated, TypedDict
 import numpy as np
 import numpy.typing as npt
 
+from greywhale.base import telling
+from greywhale.base.telling import Part
 from greywhale.base.types import Controllers
 from greywhale.files.controller import load
 from greywhale.files.paper_tables import paper_table
@@ -103,27 +105,21 @@ class Table:
         ]
         return {"title": self.title, "columns": names, "rows": rows, "remarks": list(self.remarks)}
 
+    def tell(self) -> list[Part]:
+        """The table for people; a heading stands above its rows, remarks below all."""
+        rows = []
+        for group in self.groups:
+            rows += [telling.Row((group.heading,))] if group.heading else []
+            rows += [telling.Row((label, *self._cells(group, values))) for label, values in group.rows]
+        columns = (telling.Column(left=True), *(telling.Column(name) for name, _ in self.columns))
+        return [telling.Table(columns, rows, self.title), telling.Sentences(self.remarks, near=True)]
+
     def text(self) -> str:
-        """For people: headings on lines of their own, columns aligned, no trailing blanks."""
-        shown = [
-            (group, [(label, self._cells(group, values)) for label, values in group.rows]) for group in self.groups
-        ]
-        cells = [row for _, rows in shown for _, row in rows]
-        widths = [max(len(name), *(len(row[place]) for row in cells)) for place, (name, _) in enumerate(self.columns)]
-        first = max(len(label) for _, rows in shown for label, _ in rows)
-        lines = [self.title, _line(first, "", widths, [name for name, _ in self.columns])]
-        for group, rows in shown:
-            lines += [group.heading] if group.heading else []
-            lines += [_line(first, label, widths, row) for label, row in rows]
-        return "\n".join([*lines, *self.remarks])
+        return telling.Telling(self.tell()).text()
 
     def _cells(self, group: Group, values: Iterable[float | None]) -> list[str]:
         forms = [form or group.form for _, form in self.columns]
         return ["-" if value is None else f"{value:{form}}" for value, form in zip(values, forms, strict=True)]
-
-
-def _line(first: int, label: str, widths: Sequence[int], cells: Sequence[str]) -> str:
-    return f"{label:{first}}" + "".join(f"  {cell:>{width}}" for cell, width in zip(cells, widths, strict=True))
 
 
 def scaling_factors(after: Controllers, *, joints: Joints = ALL, paper: bool = False) -> Table:

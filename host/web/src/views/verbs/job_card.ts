@@ -2,8 +2,15 @@
 
 import { button, el, setText } from "../../parts/dom";
 import type { Job, Jobs, Json } from "../../session/services";
+import type { Telling } from "../../session/telling";
+import type { ReadLog } from "./motions_picture";
 import { predictedBeside, trialsIn } from "./predicted";
 import { SearchCurve } from "./search_curve";
+import { setsPictures } from "./sets_picture";
+import { tellingElements, type OpenVerb } from "./telling";
+
+/** What a card's buttons and pictures need of the view around it. */
+export type Around = { readonly open: OpenVerb; readonly log: ReadLog };
 
 /** The sentence by which a calibration asks for a joint. */
 const ASKED = /\bjoint ([0-3])\b/;
@@ -23,7 +30,9 @@ export class JobCard {
   private readonly stop: HTMLButtonElement;
   private shown: Job["state"] | null = null;
 
-  constructor(id: string, verb: string, jobs: Jobs, attempt: (act: () => Promise<void>) => void) {
+  constructor(
+    id: string, verb: string, jobs: Jobs, attempt: (act: () => Promise<void>) => void, private readonly around: Around,
+  ) {
     this.title = el("h2", {}, verb);
     this.stop = button("Stop this", () => attempt(() => jobs.stop(id)));
     const line = el("input", { type: "text", attrs: { "aria-label": `Answer to ${verb}` } });
@@ -58,7 +67,7 @@ export class JobCard {
       this.said.textContent = lines;
       this.said.scrollTop = this.said.scrollHeight;
     }
-    if (job.state !== this.shown && job.result !== null) this.showResult(job.result, job.summary);
+    if (job.state !== this.shown && job.result !== null) this.showResult(job.result, job.telling);
     this.shown = job.state;
   }
 
@@ -76,71 +85,36 @@ export class JobCard {
     return this.curve.hear(progress) || !progress.note ? progress.text : `${progress.text} (${progress.note})`;
   }
 
-  /** The terminal's words first; who wants each number opens the details. */
-  private showResult(result: Json, summary: string | null): void {
-    const { curves = null, ...rest }: Entries = isRecord(result) ? result : { result };
-    this.curve.end(curves);
-    const trials = trialsIn(rest);
-    const shown = trials.length ? { ...rest, trials: trials.map(({ predicted, measured, ...other }) => other) } : rest;
-    const details = describe(shown, 0);
+  /** What the terminal says first; who wants each number opens the details. */
+  private showResult(result: Json, telling: Telling | null): void {
+    const record: { readonly [key: string]: Json } = isRecord(result) ? result : {};
+    this.curve.end(record["curves"] ?? null);
+    const trials = trialsIn(record);
+    const pictures = [...setsPictures(record), ...(trials.length ? [predictedBeside(trials)] : [])];
+    const told = tellingElements(telling ?? { parts: [], steps: [] }, this.around.log, this.around.open, pictures);
     this.result.replaceChildren(
-      ...(summary ? [inWords(summary)] : []),
-      ...(trials.length ? [predictedBeside(trials)] : []),
-      summary ? el("details", {}, el("summary", {}, "Details"), details) : details);
+      el("div", { class: "told", attrs: { role: "group", "aria-label": "Result" } }, ...told), details(result, telling === null));
   }
 }
 
-const COLUMNS = /\S {2,}\S/; // of a line that stands in a table
-
-/** A text as a terminal prints it: sentences break where the page ends, lines of tables do not. */
-function inWords(text: string): HTMLElement {
-  const lines = text.split("\n").map((line) => el("div", COLUMNS.test(line) ? { class: "columns" } : {}, line || "\u00a0"));
-  return el("div", { class: "summary", attrs: { tabindex: "0", role: "region", "aria-label": "Result" } }, ...lines);
-}
-
-const DEEPEST = 6;
-const MOST_SHOWN = 24; // of a list of numbers
-const MOST_COLUMNS = 4;
-
-/** JSON as nested tables; numbers with the digits that a person reads. */
-function describe(value: Json, depth: number): HTMLElement {
-  if (Array.isArray(value) && value.every((one) => typeof one !== "object" || one === null)) {
-    const more = value.length > MOST_SHOWN ? `, ... (${value.length} in all)` : "";
-    return el("span", {}, value.slice(0, MOST_SHOWN).map(plain).join(", ") + more);
-  }
-  if (typeof value !== "object" || value === null) return el("span", {}, plain(value as Exclude<Json, object>));
-  if (isMatrix(value)) return el("span", {}, `${value.length} x ${value[0]?.length ?? 0} numbers`);
-  if (Array.isArray(value) && value.length > 1 && value.every(isRecord)) return table(value.filter(isRecord));
-  if (Array.isArray(value) && value.length === 1) return describe(value[0] as Json, depth);
-  if (depth >= DEEPEST) return el("code", {}, JSON.stringify(value));
-  const rows = Object.entries(value).map(([key, inner]) =>
-    el("div", { class: "entry" }, el("span", { class: "quiet" }, key.replace(/_/g, " ")), describe(inner as Json, depth + 1)));
-  return el("div", { class: "entries" }, ...rows);
-}
-
-function isMatrix(value: Json): value is readonly (readonly number[])[] {
-  const isRow = (row: Json): boolean => Array.isArray(row) && row.length > 0 && row.every((one) => typeof one === "number");
-  return Array.isArray(value) && value.length > 1 && value.every(isRow);
-}
-
-type Entries = { readonly [key: string]: Json };
-
-function isRecord(value: Json): value is Entries {
+function isRecord(value: Json): value is { readonly [key: string]: Json } {
   return typeof value === "object" && value !== null && !Array.isArray(value);
 }
 
-/** Objects of one kind: four joints side by side, many findings one below the other. */
-function table(records: readonly Entries[]): HTMLElement {
-  const keys = [...new Set(records.flatMap((record) => Object.keys(record)))];
-  const cell = (record: Entries, key: string): HTMLElement => el("td", {}, describe(record[key] ?? null, DEEPEST));
-  const head = (key: string, scope: string): HTMLElement => el("th", { attrs: { scope } }, key.replace(/_/g, " "));
-  const rows = records.length > MOST_COLUMNS
-    ? [el("tr", {}, ...keys.map((key) => head(key, "col"))), ...records.map((record) => el("tr", {}, ...keys.map((key) => cell(record, key))))]
-    : keys.map((key) => el("tr", {}, head(key, "row"), ...records.map((record) => cell(record, key))));
-  return el("div", { class: "scroll", attrs: { tabindex: "0" } }, el("table", {}, el("tbody", {}, ...rows)));
+/** The answer as a program gets it. */
+function details(result: Json, open: boolean): HTMLElement {
+  const text = el("pre", { class: "said", attrs: { tabindex: "0", "aria-label": "Details" } }, jsonText(result));
+  return el("details", open ? { attrs: { open: "" } } : {}, el("summary", {}, "Details"), text);
 }
 
-function plain(value: Json): string {
-  if (typeof value === "number") return Number.isInteger(value) ? String(value) : String(Number(value.toPrecision(5)));
-  return value === null ? "–" : String(value);
+/** JSON with a line for each value; what holds plain values alone stands in one. */
+function jsonText(value: Json, indent = ""): string {
+  const inner = typeof value === "object" && value !== null ? Object.values(value) : [];
+  if (!inner.some((one) => typeof one === "object" && one !== null)) return JSON.stringify(value);
+  const deeper = `${indent}  `;
+  const lines = Array.isArray(value)
+    ? value.map((one: Json) => deeper + jsonText(one, deeper))
+    : Object.entries(value as object).map(([key, one]) => `${deeper}${JSON.stringify(key)}: ${jsonText(one as Json, deeper)}`);
+  const [begin, end] = Array.isArray(value) ? "[]" : "{}";
+  return `${begin}\n${lines.join(",\n")}\n${indent}${end}`;
 }

@@ -73,7 +73,10 @@ export class DoView implements View {
   private heard(job: Job): void {
     let card = this.cards.get(job.id);
     if (!card) {
-      card = new JobCard(job.id, job.verb, this.services.jobs, (act) => void this.session.attempt(act));
+      card = new JobCard(job.id, job.verb, this.services.jobs, (act) => void this.session.attempt(act), {
+        open: (verb, given) => void this.session.attempt(() => this.open(verb, given)),
+        log: (file) => this.services.log(file),
+      });
       this.cards.set(job.id, card);
       this.none.remove();
       this.jobs.prepend(card.element);
