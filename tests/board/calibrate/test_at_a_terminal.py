@@ -110,7 +110,7 @@ def test_mistakes_and_early_keys_cost_nothing_and_only_a_yes_stores(bench: Bench
         go_to_the_pulses(session, person)
         session.enter()
         session.enter("yes")
-        assert "limits, degrees" in session.until("Store this? [yes or no]"), "the result is shown before the question"
+        assert "limits [degrees]" in session.until("Store this? [yes or no]"), "the result is shown before the question"
         session.enter()
         session.until("Store this? [yes or no]")
         session.enter("yes")

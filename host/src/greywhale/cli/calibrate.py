@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from greywhale.base.errors import BadUsage, UserError, cut
+from greywhale.base.telling import Column, Part, Row, Sentences, Step, Table, Telling
 from greywhale.base.types import Crc, PerJoint
 from greywhale.board.calibrate import Options, Result, calibrate
 from greywhale.board.calibrate.solve import Calibration
@@ -28,6 +29,9 @@ from greywhale.protocol.ports import choose_port
 
 TRACK_DEG = (180.0, 450.0)  # of any potentiometer of one turn, and a little beyond
 FARTHEST_DEG = 359.0  # of a pose
+_NAME = Column(width=11, left=True)
+_DIRECTIONS = {True: "as the joint", False: "reversed"}
+_TURNS = {1: "turns as it should", -1: "turned the wrong way, motor_sign is changed"}
 
 
 class MotorFacts(TypedDict):
@@ -96,19 +100,23 @@ def command(
     with Device(choose_port(port)) as device:
         with _saying("Nothing was stored."), contextlib.closing(Terminal()) as person:
             result = calibrate(device, person, poses)
-            text = _text(result)
+            found = _tell(result)
             if not yes:
-                person.tell(text)
+                person.tell(Telling(found).text())
             if not (yes or person.agrees("Store this?")):
                 raise UserError("you said no.")
             parameter_file.save(backup, result.before)
         with _saying(f"The board may have the new parameters; to undo: greywhale params restore {backup}"):
             upload_set(device, result.after)
-    undo = (
-        f"Stored. To undo: greywhale params restore {backup}\n"
-        "An arm file needs these potentiometers too: greywhale arm match arm.toml"
+    stored = Sentences(
+        [
+            f"Stored. To undo: greywhale params restore {backup}",
+            "An arm file needs these potentiometers too: greywhale arm match arm.toml",
+        ]
     )
-    show(as_json, _facts(device.port, result, backup), f"{text}\n\n{undo}" if yes else undo)
+    undo = Step("params restore", "Undo: take the parameters from before", {"file": str(backup)})
+    steps = [Step("doctor", "Look at the set-up"), undo]
+    show(as_json, _facts(device.port, result, backup), Telling([*(found if yes else []), stored], steps))
 
 
 @contextlib.contextmanager
@@ -161,19 +169,24 @@ def _track_deg(found: Calibration, pot: int) -> float:
     return round(float(np.degrees(abs(found.scale[pot]) * FULL_SCALE)), 2)
 
 
-def _text(result: Result) -> str:
+def _tell(result: Result) -> list[Part]:
     found = result.calibration
-    lines = [f"{'':12}{'zero, counts':>14}{'track, degrees':>16}  direction"]
-    for pot in found.pots:
-        track, name = _track_deg(found, pot), POTS[pot]
-        way = "as the joint" if found.scale[pot] > 0 else "reversed"
-        lines.append(f"{name:12}{found.zero[pot]:>14.1f}{track:>16.1f}  {way}")
-    lines += ["", f"{'':12}{'limits, degrees':>18}{'the arms differ by':>22}"]
+    tracks = [
+        Row((POTS[pot], f"{found.zero[pot]:.1f}", f"{_track_deg(found, pot):.1f}", _DIRECTIONS[found.scale[pot] > 0]))
+        for pot in found.pots
+    ]
+    limits = []
     for joint in found.joints:
         low, high = np.degrees(found.limits[joint])
-        lines.append(f"{f'joint {joint}':12}{f'{low:.0f} to {high:.0f}':>18}{1e3 * result.apart[joint]:>17.1f} mrad")
-    lines += [f"{f'joint {joint}':12}{'not in use':>18}" for joint in unused(found.joints)]
-    ways = {1: "turns as it should", -1: "turned the wrong way, motor_sign is changed"}
-    if result.motors:
-        lines += ["", *(f"motor {one.joint}     {ways[one.sign]} ({one.volts:.1f} V)" for one in result.motors)]
-    return "\n".join([*lines, *([""] if result.remarks else []), *result.remarks])
+        limits.append(Row((f"joint {joint}", f"{low:.0f} to {high:.0f}", f"{1e3 * result.apart[joint]:.1f}")))
+    limits += [Row((f"joint {joint}", "not in use")) for joint in unused(found.joints)]
+    motors = [Row((f"motor {one.joint}", f"{_TURNS[one.sign]} ({one.volts:.1f} V)")) for one in result.motors]
+    return [
+        Table(
+            (_NAME, Column("zero", "counts", 14), Column("track", "degrees", 15), Column("direction", left=True)),
+            tracks,
+        ),
+        Table((_NAME, Column("limits", "degrees", 18), Column("the arms differ by", "mrad", 26)), limits),
+        *([Table((_NAME, Column(left=True)), motors)] if motors else []),
+        Sentences(result.remarks, grave=True),
+    ]
