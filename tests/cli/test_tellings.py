@@ -4,10 +4,15 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pytest
+
 from greywhale.base.telling import Column, Row, Table, Telling
+from greywhale.cli import entry
 from greywhale.cli.catalogue import VERBS, catalogue
 from greywhale.dashboard.folder import Folder
 from greywhale.dashboard.verbs import command_line
+from tests.cli.example_log import write_log
+from tests.cli.test_wrapping import seen_on
 from tests.support.tellings import told_by_verbs, words, words_in
 
 __all__ = ["told_by_verbs"]
@@ -35,6 +40,17 @@ def test_each_next_step_is_a_verb_of_the_page_with_arguments_that_it_takes(
             needed = {one["name"] for one in known[step.verb]["arguments"] if one["required"]}
             assert needed <= set(step.given)
             assert command_line(known[step.verb], dict(step.given), Folder(tmp_path))
+
+
+def test_a_terminal_gets_the_next_step_and_a_pipe_the_result_alone(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    write_log(Path("a log.csv"))
+    assert entry.run(["evaluate", "a log.csv"]) == 0
+    piped = capsys.readouterr().out
+    said = seen_on(100, monkeypatch, "stdout", ["evaluate", "a log.csv"])
+    assert said == f"{piped}Next: greywhale identify 'a log.csv'\n"
 
 
 def test_a_row_keeps_its_columns_and_its_words_where_a_cell_is_too_long() -> None:

@@ -29,20 +29,15 @@ function tableElement({ columns, rows, title }: Table): HTMLElement {
     ? [el("thead", {}, el("tr", {}, ...columns.map(headCell)))]
     : [];
   const body = el("tbody", {}, ...rows.map((row) => rowElement(row, columns)));
-  const named = title || columns.map(headOf).find((head) => head) || "Table";
+  const named = title || columns.map(({ head }) => head).find((head) => head) || "Table";
   return el("div", {}, ...heading(title),
     el("div", { class: "scroll", attrs: { tabindex: "0", role: "group", "aria-label": named } }, el("table", {}, ...heads, body)));
 }
 
-function headOf({ head }: Column): string {
-  return head.replace("\n", " ").trim();
-}
-
-function headCell(column: Column): HTMLElement {
-  const head = headOf(column);
-  if (!head && !column.unit) return el("td", { class: "head" });
-  const unit = column.unit ? [" ", el("span", { class: "unit" }, column.unit)] : [];
-  return el("th", { class: column.left ? "words" : "", attrs: { scope: "col" } }, head, ...unit);
+function headCell({ head, unit, left }: Column): HTMLElement {
+  if (!head && !unit) return el("td");
+  const words = [head.trim(), ...(unit ? [" ", el("span", { class: "unit" }, unit)] : [])];
+  return el("th", { class: left ? "words" : "", attrs: { scope: "col" } }, ...words);
 }
 
 function rowElement({ cells, remark, below }: Row, columns: readonly Column[]): HTMLElement {
