@@ -20,7 +20,9 @@ from greywhale.dashboard.door import Door
 SUBPROTOCOL = "greywhale"
 TOKEN_PREFIX = "token."
 ENTRY = "/enter"  # where a ticket is exchanged for the token
+UPLOAD = "/file"  # whose body may be longer
 MOST_BODY_BYTES = 1 << 20  # of a request: the words of a verb take 100 kB at most
+MOST_UPLOAD_BYTES = 1 << 27  # a log of ten minutes has some 70 MB
 # Of all who have the token. A page asks for some ten things at its start, and then for one at a time.
 REQUESTS_A_SECOND, REQUESTS_AT_ONCE = 100.0, 300.0
 # Of all others. Whoever comes too early waits, for a page that loads has no token yet.
@@ -69,12 +71,13 @@ class Guard:
             await self._inner(scope, receive, send)
             return
         refusal = self._refusal(scope) or await self._refusal_by_token(scope)
-        if refusal is None and _length(scope) > MOST_BODY_BYTES:
-            refusal = (413, f"The request is larger than {MOST_BODY_BYTES} bytes.")
+        most = _most_bytes(scope)
+        if refusal is None and _length(scope) > most:
+            refusal = (413, f"The request is larger than {most} bytes.")
         if refusal is not None:
             await PlainTextResponse(refusal[1], refusal[0], {"connection": "close"})(scope, receive, _hardened(send))
             return
-        await self._inner(scope, _bounded(receive), _hardened(send))
+        await self._inner(scope, _bounded(receive, most), _hardened(send))
 
     def _refusal(self, scope: Scope) -> Refusal | None:
         """Status and sentence for what comes from elsewhere, or leads there."""
@@ -117,15 +120,21 @@ def _token(scope: Scope) -> bytes:
     return next((one[len(TOKEN_PREFIX) :].encode() for one in offered if one.startswith(TOKEN_PREFIX)), b"")
 
 
+def _most_bytes(scope: Scope) -> int:
+    """The most that the body of a request may have."""
+    uploads = scope["type"] == "http" and (scope["method"], scope["path"]) == ("PUT", UPLOAD)
+    return MOST_UPLOAD_BYTES if uploads else MOST_BODY_BYTES
+
+
 def _length(scope: Scope) -> int:
     """The length of the body that a request states; one that states none is counted while it comes."""
     for name, value in scope["headers"]:
         if name == b"content-length":
-            return int(value) if value.isdigit() else MOST_BODY_BYTES + 1
+            return int(value) if value.isdigit() else MOST_UPLOAD_BYTES + 1
     return 0
 
 
-def _bounded(receive: Receive) -> Receive:
+def _bounded(receive: Receive, most: int) -> Receive:
     """The body of a request breaks off where it is too long."""
     had = 0
 
@@ -134,7 +143,7 @@ def _bounded(receive: Receive) -> Receive:
         message = await receive()
         if message["type"] == "http.request":
             had += len(message.get("body", b""))
-            if had > MOST_BODY_BYTES:
+            if had > most:
                 return {"type": "http.disconnect"}
         return message
 

@@ -60,7 +60,7 @@ def load(path: str | Path, model: type[Model]) -> Model:
 
 def loads(text: str, model: type[Model], name: str) -> Model:
     """Check TOML text against `model`; `name` stands for the file in error sentences."""
-    return check(_parse(text, name), model, name)
+    return check(parse(text, name), model, name)
 
 
 def read(path: str | Path) -> dict[str, Any]:
@@ -72,7 +72,7 @@ def read(path: str | Path) -> dict[str, Any]:
         raise UserError(f"{path}: cannot be read: {os_reason(error)}.") from None
     except UnicodeDecodeError as error:
         raise UserError(f"{path}: {sentences.NOT_UTF8.format(at=error.start)}") from None
-    return _parse(text, str(path))
+    return parse(text, str(path))
 
 
 def check(data: dict[str, Any], model: type[Model], name: str) -> Model:
@@ -103,7 +103,7 @@ def key_path(location: Sequence[str | int]) -> str:
     return cut(path, 120) or "the file"
 
 
-def _parse(text: str, name: str) -> dict[str, Any]:
+def parse(text: str, name: str) -> dict[str, Any]:
     text = text.removeprefix("\ufeff")  # Windows Notepad puts it there
     _refuse_depth(text, name)
     try:
