@@ -6,20 +6,26 @@ import contextlib
 import io
 import json
 import queue
+import re
 import sys
 from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 from greywhale.base.errors import UserError
+from greywhale.base.formats.kinds import Kind
 from greywhale.cli import entry
 from greywhale.cli.catalogue import catalogue
+from greywhale.cli.form_words import GROUPS, WORDS
+from greywhale.dashboard.arm_answers import questions
 from greywhale.dashboard.folder import Folder
 from greywhale.dashboard.job import Facts
 from greywhale.dashboard.jobs import Jobs
 from greywhale.dashboard.verbs import command_line
+from greywhale.files.arm import load_arm
 from greywhale.files.log import read_log
 from greywhale_sim.lockstep import LockStepBench
 from tests.cli.example_log import write_log
@@ -118,8 +124,13 @@ def test_what_needs_the_port_itself_has_it_as_long_as_it_runs(shared: Shared, tm
     started = jobs.start(asked, page.client.id)
     assert started["state"] == "running"
     assert told.get(timeout=PATIENCE_S)["state"] == "running", "a page sees at once what it has started"
+    with pytest.raises(UserError, match="still runs"):
+        jobs.put_away(started["id"])
     jobs.say(started["id"], "go on")
     ended = told.get(timeout=PATIENCE_S)
+    jobs.put_away(started["id"])
+    assert told.get(timeout=PATIENCE_S)["kind"] == "gone", "other pages put its card away as well"
+    assert jobs.facts() == []
     jobs.close()
     assert ended["result"]["words"] == ["-", "flash", "--hex=a.hex", "--port", "the port", "--json", "--"]
     assert events == ["`greywhale flash` has the port.", "taken again"]
@@ -137,15 +148,62 @@ def test_the_catalogue_is_that_of_the_command_line() -> None:
     assert VERBS["tune"]["arguments"][0]["kind"] == "file"
     for verb in VERBS.values():
         assert verb["help"].endswith(".")
+        assert verb["title"]
+        assert verb["group"]
+        labels = [one["label"] for one in verb["arguments"]]
+        assert len(set(labels)) == len(labels), "an error names a field by its label"
+        for one in verb["arguments"]:
+            assert not one["required"] or one["first"], "what is needed is seen at once"
+            assert not re.search("--|_", one["label"] + one["unit"]), "a label is no flag"
+            assert re.fullmatch("[A-Z].*[^.]", one["label"])
         assert not {"port", "as_json"} & {one["name"] for one in verb["arguments"]}
         without_countdown = [one for one in verb["arguments"] if "without the countdown" in one["help"]]
         assert without_countdown == [], "on a page nobody leaves it out"
 
 
+def test_each_word_of_the_forms_belongs_to_an_argument() -> None:
+    """A label that stays behind when its option goes, or that two verbs say differently, is found here."""
+    shown = {(verb, one["name"]) for verb, facts in VERBS.items() for one in facts["arguments"]}
+    for key in WORDS:
+        verb, _, name = key.rpartition(" ")
+        assert (verb, name) in shown if verb else sum(name == one for _, one in shown) > 1, key
+    for verbs in GROUPS.values():
+        for verb, words in verbs.items():
+            assert {(verb, name) for name in words.first} <= shown, verb
+    assert {kind for facts in VERBS.values() for one in facts["arguments"] for kind in one["files"]} <= {
+        *("log", "motion", "firmware"), *(kind.name.lower() for kind in Kind)
+    }  # fmt: skip
+    (said,) = (one["help"] for one in VERBS["record"]["arguments"] if one["name"] == "save_motion")
+    assert said.startswith('With "Let greywhale lead the arm": also write')
+
+
+def test_the_form_of_an_arm_asks_what_follows_and_ends_as_an_arm_file(desk: Desk, tmp_path: Path) -> None:
+    ask = partial(questions, folder=Folder(tmp_path))
+
+    def names(answers: object) -> list[str]:
+        return [one["where"] for group in ask(answers) for one in group["questions"]]
+
+    assert "link[1].wall_mm" in names({})
+    assert "link[1].height_mm" in names({"link[1].section": "bar"})
+    assert not [name for name in names({"joints": "0,1"}) if name.startswith("joint[2]")]
+    answers = {"name": "Bob", "joints": "0,1", "link[1].length_mm": "14 cm", "joint[1].same_motor": "no"}
+    id = desk.start("arm new", answers=answers, out="bob.toml")
+    ended = desk.wait(id)
+    assert ended["state"] == "done", ended
+    assert load_arm(tmp_path / "bob.toml").name == "Bob"
+    given = {one["where"]: one["given"] for group in ask(ended["arguments"]["answers"]) for one in group["questions"]}
+    assert ended["arguments"]["answers"] == "bob.answers.toml"
+    assert [given[name] for name in ("name", "link[1].length_mm", "joint[1].same_motor")] == ["Bob", "140", "no"]
+    with pytest.raises(UserError, match=r"Its length \(link\[1\].length_mm\) is 'long': that is no number."):
+        desk.start("arm new", answers={**answers, "link[1].length_mm": "long"})
+    with pytest.raises(UserError, match="it is not in"):
+        desk.start("arm new", answers=answers, out="../bob.toml")
+
+
 def test_words_are_those_of_the_command_line(tmp_path: Path) -> None:
     folder = Folder(tmp_path)
     assert command_line(VERBS["record"], {"enable": True, "seconds": 2, "out": "-x.csv"}, folder) == [
-        *("record", "--out=-x.csv", "--seconds=2", "--enable", "--"),
+        *("record", "--seconds=2", "--enable", "--out=-x.csv", "--"),
     ]
     assert command_line(VERBS["evaluate"], {"logs": ["--help", "b.csv"]}, folder) == [
         *("evaluate", "--", "--help", "b.csv"),

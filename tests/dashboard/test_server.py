@@ -21,7 +21,7 @@ from greywhale.dashboard.answers import Answers
 from greywhale.dashboard.bucket import Bucket
 from greywhale.dashboard.door import Door
 from greywhale.dashboard.folder import Folder
-from greywhale.dashboard.guard import MOST_BODY_BYTES, REQUESTS_AT_ONCE, Guard
+from greywhale.dashboard.guard import MOST_BODY_BYTES, MOST_UPLOAD_BYTES, REQUESTS_AT_ONCE, Guard
 from greywhale.files.log.layout import HEADING, TITLE
 from greywhale.protocol import schema
 from greywhale.protocol.frames import FrameDecoder
@@ -202,6 +202,30 @@ def test_a_log_comes_as_bytes_and_its_errors_as_a_terminals_sentence(page: Page)
         assert reason in json.loads(told)["error"]
 
 
+def test_a_page_brings_fetches_renames_and_deletes_a_file(page: Page) -> None:
+    log = f"# {TITLE}\n{HEADING}\n".encode()
+    named = f"/file?name={quote('new é.csv')}"
+    for address, status, told in (
+        (named, 200, "new é.csv"),
+        (named, 400, "exists already"),
+        (f"{named}&if_there=rename", 200, "new é-2.csv"),
+        (f"{named}&if_there=anyhow", 400, "if_there must be one of"),
+        ("/file?name=../out.csv", 400, "it is not in"),
+    ):
+        answered, body = page.ask("PUT", address, log)
+        assert (answered, told in json.loads(body)["name" if status == 200 else "error"]) == (status, True), body
+    assert page.ask("PUT", "/file?name=long.csv", log + bytes(MOST_BODY_BYTES))[0] == 200, "a log is longer than words"
+    assert page.ask("GET", named) == (200, log)
+    assert page.ask("POST", "/file", {"name": "new é.csv", "to": "old.csv"})[0] == 200
+    assert page.ask("DELETE", "/file?name=old.csv")[0] == 200
+    assert page.ask("GET", "/file?name=old.csv")[0] == 400
+    for method in ("PUT", "GET", "POST", "DELETE"):
+        assert Page(page.port, "").ask(method, named, log)[0] == 403
+        assert page.ask(method, named, log, {"Origin": "http://evil.example"})[0] == 403
+    too_long = {"Content-Length": str(MOST_UPLOAD_BYTES + 1)}
+    assert page.ask("PUT", named, headers=too_long)[0] == 413
+
+
 def test_no_request_ends_in_a_traceback(page: Page, caplog: pytest.LogCaptureFixture) -> None:
     for target in ("x", "*", "http://127.0.0.1/", "board", "?"):
         with sockets.create_connection(("127.0.0.1", page.port)) as raw:
@@ -216,13 +240,14 @@ def test_no_request_ends_in_a_traceback(page: Page, caplog: pytest.LogCaptureFix
         *({"verb": long}, {"verb": "info", "arguments": {long: 1}}, {}, {"raw": float("nan")}, {"raw": "\ud800"}),
         *([], 1, "x", None, b"", b"\xff", b'{"raw": 1e999}', b'{"raw": 1' + b"0" * 5000 + b"}", b'{"raw":' * 9000),
     ]
-    for path in ("/predict", "/jobs", f"/jobs/{long}"):
+    bodies += [{"name": long, "to": "loop"}, {"name": 1}, {"answers": 1}, {"answers": "loop"}, {"answers": long}]
+    for path in ("/predict", "/jobs", f"/jobs/{long}", "/file", "/questions"):
         for body in bodies:
             status, told = page.ask("POST", path, body)
             assert (status, json.loads(told).get("error", "").endswith((".", "]"))) == (400, True), (path, body, told)
-    for path in ("arm", "controller", "log"):
+    for method, path in (("GET", "arm"), ("GET", "controller"), ("GET", "log"), ("DELETE", "file"), ("PUT", "file")):
         for name in (long, "x" * 300, "loop", "loop/a", "%00", "%ff", "%ED%A0%80", "..", ".", "a%20log.csv/a"):
-            assert (page.ask("GET", f"/{path}?file={name}")[0], path == "log") != (200, False), name
+            assert (page.ask(method, f"/{path}?file={name}&name={name}")[0], path == "log") != (200, False), name
     for path in (f"/{long}", "/%00", "/%ff", "/a/" + "../" * 50, "//", "/page.js/x", "/page.js?" + long):
         assert page.ask("GET", path)[0] in (200, 400, 404, 405), path
     for name, text in (("Range", "bytes=9-1,x"), ("If-Modified-Since", long), ("If-None-Match", long)):

@@ -12,6 +12,7 @@ from greywhale.arm.parameters import ArmParameters
 from greywhale.base.errors import BadUsage, cut
 from greywhale.base.formats import toml_file
 from greywhale.base.formats.kinds import Kind, kind_of
+from greywhale.dashboard import arm_answers
 from greywhale.dashboard.bench import BenchControls
 from greywhale.dashboard.folder import FileFacts, Folder
 from greywhale.dashboard.jobs import Jobs
@@ -136,6 +137,25 @@ class Answers:
             raise BadUsage("no bench belongs to this dashboard; start it with --sim.")
         self.relay.require_bench(page)
         return self.bench.change(wish)
+
+    def file(self, name: str) -> bytes:
+        """The content of a file of the folder, for a person to keep."""
+        return self.folder.own(name).read_bytes()
+
+    def rename(self, asked: dict[str, Any]) -> dict[str, Any]:
+        name, new = asked.get("name"), asked.get("to")
+        if not isinstance(name, str) or not isinstance(new, str):
+            raise BadUsage("name and to must be names of files.")
+        self.folder.rename(name, new)
+        return {}
+
+    def remove(self, name: str) -> dict[str, Any]:
+        self.folder.remove(name)
+        return {}
+
+    def questions(self, asked: dict[str, Any]) -> dict[str, Any]:
+        """The questions of `arm new` that follow from the `answers` so far."""
+        return {"headings": arm_answers.questions(asked.get("answers"), self.folder)}
 
     def _arm(self, file: str | None) -> ArmParameters:
         if file is None:

@@ -55,7 +55,7 @@ class Taken:
 class Facts(TypedDict):
     """The facts of a job that pages get, again and again."""
 
-    kind: Literal["job"]
+    kind: Literal["job", "gone"]  # gone: put away
     id: str
     verb: str
     arguments: dict[str, Any]

@@ -9,6 +9,7 @@ from typing import Any, TypedDict
 
 from greywhale.base import system
 from greywhale.base.errors import BadUsage, UserError, cut
+from greywhale.dashboard import arm_answers
 from greywhale.dashboard.folder import Folder
 from greywhale.dashboard.job import Facts, Job, Lent, Taken
 from greywhale.dashboard.relay import Relay, Wish
@@ -72,6 +73,7 @@ class Jobs:
             raise BadUsage(f"{said} is no verb of a page; there are: {names}.")
         if not system.HANDS_DOWN_DESCRIPTORS:
             raise UserError(f"a page starts no verbs on Windows; run `greywhale {name}` in a terminal.")
+        arguments = arm_answers.in_a_file(verb, arguments, self._folder)
         words = command_line(verb, arguments, self._folder)
         with self._lock, ExitStack() as failed:
             if self._closed:
@@ -97,6 +99,17 @@ class Jobs:
         job = self._find(id)
         job.stop()
         return job.facts
+
+    def put_away(self, id: str) -> dict[str, Any]:
+        """Forget a job that has ended: no page shows it any more."""
+        with self._lock:
+            job = self._find(id)
+            if job.running:
+                raise UserError(f"{job.facts['verb']} still runs; stop it first.")
+            self._jobs.remove(job)
+        for listener in list(self.listeners):
+            listener({**job.facts, "kind": "gone"})
+        return {}
 
     def say(self, id: str, line: object) -> Facts:
         job = self._find(id)

@@ -18,12 +18,13 @@ from starlette.responses import JSONResponse, PlainTextResponse, Response
 from starlette.routing import BaseRoute, Mount, Route, WebSocketRoute
 from starlette.staticfiles import StaticFiles
 
-from greywhale.base.errors import BadUsage, UserError
+from greywhale.base.errors import BadUsage, UserError, cut, os_reason
 from greywhale.dashboard.access import ANEW, TICKET_LASTS_S, Access
 from greywhale.dashboard.answers import Answers
 from greywhale.dashboard.connections import Server
 from greywhale.dashboard.door import Door
-from greywhale.dashboard.guard import ENTRY, Guard
+from greywhale.dashboard.folder import IF_THERE, Folder, spool
+from greywhale.dashboard.guard import ENTRY, UPLOAD, Guard
 from greywhale.dashboard.sockets import serve_board, serve_host
 
 PAGE = Path(__file__).resolve().parent / "page"
@@ -51,10 +52,16 @@ def application(answers: Answers, page: Path, access: Access, port: int) -> Guar
         Route("/arm", _endpoint(lambda asked: answers.describe_arm(asked.get("file")))),
         Route("/controller", _endpoint(lambda asked: answers.controller(asked.get("file", "")))),
         Route("/log", _endpoint(lambda asked: answers.log(asked.get("file", "")))),
+        Route("/file", _endpoint(lambda asked: answers.file(asked.get("name", ""))), methods=["GET"]),
+        Route("/file", _endpoint(answers.rename), methods=["POST"]),
+        Route("/file", _endpoint(lambda asked: answers.remove(asked.get("name", ""))), methods=["DELETE"]),
+        Route(UPLOAD, _upload(answers.folder), methods=["PUT"]),
+        Route("/questions", _endpoint(answers.questions), methods=["POST"]),
         Route("/predict", _endpoint(answers.predict), methods=["POST"]),
         Route("/jobs", _endpoint(lambda asked: answers.jobs.listed()), methods=["GET"]),
         Route("/jobs", _endpoint(lambda asked: answers.jobs.start(asked, asked.get(PAGE_ID, ""))), methods=["POST"]),
         Route("/jobs/{id}", _endpoint(lambda asked: answers.jobs.stop(asked["id"])), methods=["DELETE"]),
+        Route("/jobs/{id}/card", _endpoint(lambda asked: answers.jobs.put_away(asked["id"])), methods=["DELETE"]),
         Route(
             "/jobs/{id}", _endpoint(lambda asked: answers.jobs.say(asked["id"], asked.get("line"))), methods=["POST"]
         ),
@@ -119,6 +126,33 @@ def _entry(access: Access) -> Callable[[Request], Awaitable[Response]]:
     return enter
 
 
+def _upload(folder: Folder) -> Callable[[Request], Awaitable[Response]]:
+    """Make the endpoint for a file of the folder: the body is its content, which is kept whole or not at all."""
+
+    async def upload(request: Request) -> Response:
+        name, if_there = request.query_params.get("name", ""), request.query_params.get("if_there", "refuse")
+        try:
+            chosen = next((one for one in IF_THERE if one == if_there), None)
+            if chosen is None:
+                raise BadUsage(f"if_there must be one of: {', '.join(IF_THERE)}.")
+            with spool() as content:
+                async for piece in request.stream():
+                    await asyncio.to_thread(content.write, piece)
+                return JSONResponse({"name": await asyncio.to_thread(folder.receive, name, content, chosen)})
+        except UserError as error:
+            return _refusal(error)
+        except OSError as error:
+            return _refusal(UserError(f"{cut(name)}: there is no room for it: {os_reason(error)}."))
+        except ClientDisconnect:
+            return Response(status_code=413)
+
+    return upload
+
+
+def _refusal(error: UserError) -> Response:
+    return JSONResponse({"error": error.message, "exit_code": error.exit_code}, 400)
+
+
 def _endpoint(answer: Callable[[dict[str, Any]], object]) -> Callable[[Request], Awaitable[Response]]:
     """Make an endpoint that answers with JSON or bytes, in a thread of its own, since `answer` takes a moment.
 
@@ -134,7 +168,7 @@ def _endpoint(answer: Callable[[dict[str, Any]], object]) -> Callable[[Request],
             answered = await asyncio.to_thread(answer, asked)
             return Response(answered, media_type=_BYTES) if isinstance(answered, bytes) else JSONResponse(answered)
         except UserError as error:
-            return JSONResponse({"error": error.message, "exit_code": error.exit_code}, 400)
+            return _refusal(error)
         except ClientDisconnect:  # also what is too long breaks off so
             return Response(status_code=413)
 

@@ -21,8 +21,15 @@ class ArgumentFacts(TypedDict):
 
     name: str
     option: str
-    kind: Literal["flag", "number", "choice", "file", "text"]
+    label: str  # in words, for a person
+    unit: str  # of a number, "" without one
+    first: bool  # it matters first; the others stand under "More"
+    # Answers: those to the questions of `arm new`.
+    kind: Literal["flag", "number", "choice", "file", "text", "answers"]
+    files: list[str]  # kinds of the folder's files that it takes, none where it names a new one
     choices: list[str]
+    least: float | None  # of a number
+    most: float | None
     default: Any  # null: none
     required: bool
     many: bool  # it takes a list of values
@@ -31,6 +38,8 @@ class ArgumentFacts(TypedDict):
 
 class VerbFacts(TypedDict):
     verb: str  # such as "params backup"
+    title: str  # as a person would ask for it
+    group: str
     help: str  # one sentence
     board: BoardUse
     arguments: list[ArgumentFacts]
@@ -60,7 +69,7 @@ def command_line(verb: VerbFacts, given: Mapping[str, Any], folder: Folder) -> l
 
 def _flag(argument: ArgumentFacts, value: object) -> bool:
     if not isinstance(value, bool):
-        raise BadUsage(f"{argument['name']} is {cut(repr(value))}, but it must be true or false.")
+        raise BadUsage(f"{argument['label']} is {cut(repr(value))}, but it must be true or false.")
     return value
 
 
@@ -68,12 +77,12 @@ def _texts(argument: ArgumentFacts, value: object, folder: Folder) -> Iterator[s
     """The values of an argument. A name is looked at whatever it is called: any text may be a file's."""
     values: Sequence[object] = value if isinstance(value, list) and argument["many"] else [value]
     if len(values) > MOST_VALUES:
-        raise BadUsage(f"{argument['name']} has {len(values)} values, but at most {MOST_VALUES} may be given.")
+        raise BadUsage(f"{argument['label']} has {len(values)} values, but at most {MOST_VALUES} may be given.")
     for one in values:
         text = str(one)
         fits = isinstance(one, str | int | float) and not isinstance(one, bool)
         if not fits or not text or not text.isprintable() or len(text) > LONGEST_VALUE_LETTERS:
-            raise BadUsage(f"{argument['name']} is {cut(repr(one))}, but it must be text or a number.")
+            raise BadUsage(f"{argument['label']} is {cut(repr(one))}, but it must be text or a number.")
         if isinstance(one, str):
             folder.argument(text)
         yield text
