@@ -18,6 +18,7 @@ from greywhale.commission.motions import PARTS
 from greywhale.dashboard.client import Client
 from greywhale.dashboard.job import Facts
 from greywhale.dashboard.jobs import Listed
+from greywhale.files.arm import load_arm
 from greywhale.files.log import read_log
 from greywhale.protocol.schema import DEFAULTS, PARAMETER_BY_NAME
 from tests.cli.example_log import write_log
@@ -40,15 +41,28 @@ def desk(shared_page: Page) -> Page:
     return shared_page
 
 
+def form_of(desk: Page, verb: str) -> Locator:
+    """The form of a verb, opened anew."""
+    desk.locator(f"[data-verb='{verb}']").click()
+    form = desk.locator(".verb-form").filter(has=desk.locator("h2 code", has_text=verb))
+    form.wait_for()
+    return form
+
+
 def begin(desk: Page, verb: str, **given: str | bool) -> Locator:
     """Start a verb by its form; its card."""
-    desk.get_by_role("button", name=verb, exact=True).click()
-    start = desk.get_by_role("button", name=f"Start {verb}")
-    start.wait_for()
-    desk.locator(".verb-form details").evaluate_all("all => all.forEach((one) => { one.open = true; })")
+    form = form_of(desk, verb)
+    form.locator("details").evaluate_all("all => all.forEach((one) => { one.open = true; })")
     for name, value in given.items():
-        field = desk.get_by_label(name.replace("_", " "), exact=True)
-        field.check() if value is True else field.fill(str(value))
+        field = form.locator(f"[name='{name}']").first
+        kind = field.evaluate("one => one.type")
+        if kind == "checkbox":
+            form.locator(f"[name='{name}']" if value is True else f"[name='{name}'][value='{value}']").check()
+        elif kind == "select-one":
+            field.select_option(str(value))
+        else:
+            field.fill(str(value))
+    start = form.get_by_role("button", name="Start", exact=True)
     cards = desk.locator(".job").filter(has=desk.get_by_role("heading", name=verb, exact=True))
     before = cards.count()
     start.click()
@@ -115,7 +129,7 @@ def test_verbs_end_with_their_result_or_their_sentence(search: Locator, desk: Pa
     assert led.leader[-1, 0] == pytest.approx(0.2, abs=0.001)
     assert set(np.diff(np.round(1000 * led.time))) == {1}
     expect(done(begin(desk, "upload", controller="table_8", yes=True))).to_contain_text("joint0.kp")
-    desk.get_by_role("button", name="Controller").click()  # which follows
+    desk.get_by_role("button", name="Controller", exact=True).click()  # which follows
     raw = stage.answers.controller("table_8")["raw"][KP.name]
     assert raw != DEFAULTS[KP.index]
     expect(desk.get_by_label("Kp 1/rad")).to_have_value(f"{KP.to_physical(raw):.7g}")
@@ -160,6 +174,45 @@ def test_a_search_draws_its_curve_while_it_runs_and_each_joints_at_its_end(searc
         assert len(depths) == len(curve["evaluations"]) > 2
         expect(search.get_by_role("img", name=f"Sets of joint {joint}, before and after")).to_be_visible()
         assert depths[int(np.argmin(curve["cost"]))] == max(depths), "the lower on the screen, the better"
+
+
+def test_a_form_says_beside_its_field_what_is_wrong(desk: Page, stage: Stage) -> None:
+    before = [facts["id"] for facts in stage.jobs.facts()]
+    form = form_of(desk, "record")
+    seconds = form.get_by_label("Time to record, s", exact=True)
+    seconds.fill("a while")
+    form.get_by_role("button", name="Start", exact=True).click()
+    expect(form.get_by_role("alert")).to_have_text('Time to record is "a while", but it must be a number.')
+    expect(seconds).to_be_focused()
+    assert [facts["id"] for facts in stage.jobs.facts()] == before
+    card = begin(desk, "record", out="none.csv", seed="3")
+    failed(card)
+    said = '"Seed of the random numbers" belongs to "Let greywhale lead the arm"; add that, or leave it out.'
+    expect(form.get_by_role("alert")).to_have_text(said)
+    expect(form.get_by_label("Seed of the random numbers", exact=True)).to_be_focused()
+    card.get_by_role("button", name="Put away").click()
+    expect(desk.get_by_text("belongs to --excite")).to_have_count(0)
+
+
+def test_an_arm_is_described_by_answers_to_its_questions(desk: Page, stage: Stage) -> None:
+    form = form_of(desk, "arm new")
+    form.get_by_text("Link 1, the upper arm").click()
+    length = form.locator("[name='link[1].length_mm']")
+    length.fill("long")
+    form.locator("[name='link[1].section']").select_option("bar")
+    form.locator("[name='link[1].height_mm']").fill("12")
+    expect(form.get_by_role("alert")).to_have_text("Its length: that is no number.")
+    start = form.get_by_role("button", name="Start", exact=True)
+    start.click()
+    expect(length).to_be_focused()
+    length.fill("15 cm")
+    length.blur()
+    expect(form.get_by_role("alert")).to_have_count(0)
+    start.click()
+    card = desk.locator(".job").filter(has=desk.get_by_role("heading", name="arm new", exact=True))
+    expect(done(card)).to_contain_text("arm.toml is written")
+    assert load_arm(stage.folder / "arm.toml").link[1].length == pytest.approx(0.15)
+    expect(done(begin(desk, "arm match", arm="arm.toml"))).to_contain_text("matched.toml is written")
 
 
 def test_a_calibration_takes_answers_and_ends_where_it_is_stopped(desk: Page, stage: Stage) -> None:
@@ -247,8 +300,7 @@ def test_a_verb_that_cannot_start_says_why_as_long_as_that_holds(
         watcher.page.get_by_role("button", name="Do", exact=True).click()
         reason = watcher.page.locator(".verb-form .reason")
         for verb, needs in (("record", True), ("evaluate", False), ("flash", True)):
-            watcher.page.get_by_role("button", name=verb, exact=True).click()
-            start = watcher.page.get_by_role("button", name=f"Start {verb}")
+            start = form_of(watcher.page, verb).get_by_role("button", name="Start", exact=True)
             expect(start).to_be_disabled() if needs else expect(start).to_be_enabled()
             expect(reason).to_have_text("Another page drives this arm; let go there first." if needs else "")
         desk.get_by_role("button", name="Let go").click()
@@ -272,8 +324,7 @@ def test_the_count_before_the_arm_moves_stands_over_every_view_and_is_stopped_th
         stopped(where, by)
 
     monkeypatch.setattr(stage.relay, "stopped", note)
-    desk.get_by_role("button", name="replay", exact=True).click()
-    field = desk.get_by_label("motion", exact=True)
+    field = form_of(desk, "replay").locator("[name='out']")
     count = desk.get_by_role("alertdialog")
 
     def space_where_a_person_writes() -> None:
@@ -344,5 +395,5 @@ def test_the_view_says_that_it_reads_the_verbs_until_they_are_there(
     reading = page.get_by_text("Reading what can be done ...")
     expect(reading).to_be_visible()
     ready.set()
-    expect(page.get_by_role("button", name="record", exact=True)).to_be_visible()
+    expect(page.get_by_role("button", name="Record a log", exact=True)).to_be_visible()
     expect(reading).to_be_hidden()

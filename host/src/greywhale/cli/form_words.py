@@ -26,21 +26,21 @@ class Words(NamedTuple):
 
 GROUPS: dict[str, dict[str, FormWords]] = {
     "Real arm": {
-        "flash": FormWords("Put the firmware on a board"),
+        "flash": FormWords("Flash the firmware"),
         "doctor": FormWords("Check board and set-up", ("supply",)),
         "arm new": FormWords("Describe your arm", ("answers", "out")),
-        "calibrate": FormWords("Calibrate the potentiometers", ("in_use",)),
-        "arm match": FormWords("Put the calibration into an arm file", ("arm", "out")),
+        "calibrate": FormWords("Calibrate", ("in_use",)),
+        "arm match": FormWords("Calibrated arm file", ("arm", "out")),
         "info": FormWords("Ask the board how it is"),
     },
     "Learn": {
-        "commission": FormWords("Let the arm learn by itself", ("arm_file", "out")),
+        "commission": FormWords("Let the arm learn", ("arm_file", "out")),
         "record": FormWords("Record a log", ("seconds", "enable", "out")),
         "replay": FormWords("Lead along a motion", ("motion", "out")),
         "evaluate": FormWords("Measure a log", ("logs",)),
         "identify": FormWords("Find a model of the arm", ("logs", "arm_file", "out")),
         "tune": FormWords("Tune the controllers", ("model_file", "out")),
-        "upload": FormWords("Put controllers on the board", ("controller",)),
+        "upload": FormWords("Upload controllers", ("controller",)),
         "adapt": FormWords("Adapt while you work", ("model", "seconds", "out")),
     },
     "Files": {

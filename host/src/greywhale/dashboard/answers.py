@@ -15,6 +15,7 @@ from greywhale.base.formats.kinds import Kind, kind_of
 from greywhale.dashboard import arm_answers
 from greywhale.dashboard.bench import BenchControls
 from greywhale.dashboard.folder import FileFacts, Folder
+from greywhale.dashboard.guard import MOST_UPLOAD_BYTES
 from greywhale.dashboard.jobs import Jobs
 from greywhale.dashboard.predict import predict  # here, for a server that imports later lets its board wait
 from greywhale.dashboard.relay import Relay
@@ -42,6 +43,7 @@ class State(TypedDict):
     files: list[FileFacts]
     controllers: list[str]  # that come with greywhale
     arms: list[str]
+    most_upload_bytes: int
 
 
 class JointFacts(TypedDict):
@@ -100,6 +102,7 @@ class Answers:
             "files": self.folder.files(),
             "controllers": controller_names(),
             "arms": arm_names(),
+            "most_upload_bytes": MOST_UPLOAD_BYTES,
         }
 
     def history(self, tick: str | None) -> bytes:

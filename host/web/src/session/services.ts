@@ -2,7 +2,7 @@
 
 import type { Telling } from "./telling";
 
-export type NamedFile = { readonly name: string; readonly kind: string };
+export type NamedFile = { readonly name: string; readonly kind: string; readonly size_bytes: number; /** since 1970 */ readonly changed_s: number };
 
 export type HostState = {
   readonly greywhale: string;
@@ -11,7 +11,36 @@ export type HostState = {
   readonly sim: boolean;
   readonly files: readonly NamedFile[];
   readonly controllers: readonly string[];
+  readonly arms: readonly string[];
+  /** The most that a file may have which a page brings. */
+  readonly most_upload_bytes: number;
 };
+
+/** The files of the host's folder that verbs take or write. A name that is taken is refused, replaced, or gets a number. */
+export interface Files {
+  fetch(name: string): Promise<Blob>;
+  /** The name that a file got. */
+  bring(name: string, content: Blob, ifThere: "refuse" | "replace" | "rename"): Promise<string>;
+  rename(name: string, to: string): Promise<void>;
+  remove(name: string): Promise<void>;
+}
+
+/** A question about an arm, and what was answered: "" holds what is usual. */
+export type Question = {
+  readonly where: string;
+  readonly text: string;
+  readonly unit: string;
+  readonly choices: readonly string[];
+  /** True where a number will do. */
+  readonly number: boolean;
+  readonly usual: string;
+  readonly given: string;
+  readonly problem: string;
+  readonly help: string;
+};
+export type Heading = { readonly heading: string; readonly questions: readonly Question[] };
+/** Answers by the questions' names; or a file of the folder that has some. */
+export type ArmAnswers = string | { readonly [where: string]: string };
 
 /** A motion and how a model follows it: rows of four joints, rad and V. */
 export type Predicted = {
@@ -60,7 +89,17 @@ export interface Bench {
 
 export type Argument = {
   readonly name: string;
-  readonly kind: "flag" | "number" | "choice" | "file" | "text";
+  /** Its word on the command line, "" where its place alone tells. */
+  readonly option: string;
+  readonly label: string;
+  readonly unit: string;
+  /** True if it matters first. */
+  readonly first: boolean;
+  readonly kind: "flag" | "number" | "choice" | "file" | "text" | "answers";
+  /** The kinds of files that it takes; none where it names a new one. */
+  readonly files: readonly string[];
+  readonly least: number | null;
+  readonly most: number | null;
   readonly choices: readonly string[];
   readonly default: unknown;
   readonly required: boolean;
@@ -70,6 +109,9 @@ export type Argument = {
 
 export type Verb = {
   readonly verb: string;
+  /** As a person would ask for it. */
+  readonly title: string;
+  readonly group: string;
   readonly help: string;
   /** How it uses a board. Taken: it has the port itself, with or without a board at it. */
   readonly board: "none" | "lent" | "taken";
@@ -98,10 +140,12 @@ export interface Jobs {
   /** Starts a verb; the id of its job. */
   start(verb: string, given: Readonly<Record<string, unknown>>): Promise<string>;
   stop(id: string): Promise<void>;
+  /** Forgets a job that has ended. */
+  putAway(id: string): Promise<void>;
   /** Writes a line to a verb that asks. */
   answer(id: string, line: string): Promise<void>;
-  /** Hears each job as it is, and whenever something about it changes. */
-  listen(heard: (job: Job) => void): void;
+  /** Hears each job as it is, and whenever something about it changes; `gone` hears which was put away. */
+  listen(heard: (job: Job) => void, gone?: (id: string) => void): void;
 }
 
 /** The progress of a search for controllers: the best cost of each joint, now and after each batch. */
@@ -134,6 +178,9 @@ export interface Tuner {
 export interface Services {
   readonly jobs: Jobs;
   readonly bench: Bench;
+  readonly files: Files;
+  /** The questions of `arm new` that follow from the answers so far. */
+  questions(answers: ArmAnswers): Promise<readonly Heading[]>;
   state(): Promise<HostState>;
   /** The samples of a log: payloads of the link's Sample, one after the other, ticks from the log's first row. */
   log(file: string): Promise<Uint8Array>;

@@ -1,8 +1,9 @@
 // The host behind the dashboard's server, over HTTP: every request carries the token, every error is a sentence.
 
-import type { ArmDescription, Bench, Services, HostState, Job, Jobs, Prediction, Verb } from "../session/services";
+import type { ArmAnswers, ArmDescription, Bench, Files, Heading, Services, HostState, Job, Jobs, Prediction, Verb } from "../session/services";
 
-type Method = "GET" | "POST" | "DELETE";
+type Method = "GET" | "POST" | "PUT" | "DELETE";
+type Listener = { readonly heard: (job: Job) => void; readonly gone: (id: string) => void };
 
 const AGAIN_MS = 1000; // until a server that went is tried again
 
@@ -16,21 +17,32 @@ export class HostServices implements Services {
     verbs: async () => (await this.ask<{ verbs: Verb[] }>("GET", "/jobs")).verbs,
     start: async (verb, given) => (await this.ask<Job>("POST", "/jobs", { verb, arguments: given })).id,
     stop: (id) => this.ask<unknown>("DELETE", `/jobs/${encodeURIComponent(id)}`).then(() => undefined),
+    putAway: (id) => this.ask<unknown>("DELETE", `/jobs/${encodeURIComponent(id)}/card`).then(() => undefined),
     answer: (id, line) => this.ask<unknown>("POST", `/jobs/${encodeURIComponent(id)}`, { line }).then(() => undefined),
-    listen: (heard) => {
-      this.listeners.push(heard);
+    listen: (heard, gone = () => undefined) => {
+      this.listeners.push({ heard, gone });
       if (this.listeners.length === 1) this.hear();
     },
   };
-  private readonly listeners: ((job: Job) => void)[] = [];
+  private readonly listeners: Listener[] = [];
+
+  readonly files: Files = {
+    fetch: async (name) => (await this.request("GET", fileAddress(name))).blob(),
+    bring: async (name, content, ifThere) => {
+      const answer = await this.request("PUT", `${fileAddress(name)}&if_there=${ifThere}`, content);
+      return (await answer.json() as { name: string }).name;
+    },
+    rename: (name, to) => this.ask<unknown>("POST", "/file", { name, to }).then(() => undefined),
+    remove: (name) => this.ask<unknown>("DELETE", fileAddress(name)).then(() => undefined),
+  };
 
   constructor(private readonly token: string, private readonly page: () => string) {}
 
   private hear(): void {
     const socket = new WebSocket(`ws://${location.host}/host`, ["greywhale", `token.${this.token}`]);
     socket.addEventListener("message", ({ data }: MessageEvent<string>) => {
-      const job = JSON.parse(data) as Job;
-      for (const heard of this.listeners) heard(job);
+      const job = JSON.parse(data) as Job & { readonly kind: "job" | "gone" };
+      for (const { heard, gone } of this.listeners) job.kind === "gone" ? gone(job.id) : heard(job);
     });
     socket.addEventListener("close", () => setTimeout(() => this.hear(), AGAIN_MS));
   }
@@ -56,21 +68,29 @@ export class HostServices implements Services {
     return this.ask("GET", "/arm");
   }
 
+  async questions(answers: ArmAnswers): Promise<readonly Heading[]> {
+    return (await this.ask<{ headings: readonly Heading[] }>("POST", "/questions", { answers })).headings;
+  }
+
   private async ask<Answer>(method: Method, path: string, body?: object): Promise<Answer> {
     const text = await (await this.request(method, path, body)).text();
     return (text ? JSON.parse(text) : {}) as Answer;
   }
 
   /** The server's answer; one that refuses is an error with its sentence. */
-  private async request(method: Method, path: string, body?: object): Promise<Response> {
+  private async request(method: Method, path: string, body?: object | Blob): Promise<Response> {
     const answer = await fetch(path, {
       method,
       headers: { "X-Greywhale-Token": this.token, "X-Greywhale-Page": this.page(), "Content-Type": "application/json" },
-      ...(body ? { body: JSON.stringify(body) } : {}),
+      ...(body ? { body: body instanceof Blob ? body : JSON.stringify(body) } : {}),
     });
     if (answer.ok) return answer;
     throw new Error(sentenceIn(await answer.text()) ?? `The server answers ${answer.status} to ${path}; reload the page.`);
   }
+}
+
+function fileAddress(name: string): string {
+  return `/file?name=${encodeURIComponent(name)}`;
 }
 
 function sentenceIn(text: string): string | null {

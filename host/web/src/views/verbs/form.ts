@@ -1,92 +1,82 @@
-// A form for a verb, made from its arguments as the host names them.
+// A form for a verb, made from its arguments as the host names them. What is wrong is said beside its field.
 
 import { el } from "../../parts/dom";
 import { grey, reasonFor, showReason } from "../../parts/grey";
-import type { Argument, NamedFile, Verb } from "../../session/services";
+import type { HostState, Verb } from "../../session/services";
+import type { Field } from "./fields";
 
-type Field = { readonly argument: Argument; readonly input: HTMLInputElement | HTMLSelectElement };
+export type Given = Readonly<Record<string, unknown>>;
+
+const OPTION = /--[a-z][a-z-]*/g;
 
 export class VerbForm {
-  readonly element = el("form", { class: "verb-form" });
-  private readonly fields: readonly Field[];
-  private readonly start: HTMLButtonElement;
+  readonly element = el("form", { class: "verb-form", attrs: { novalidate: "" } });
+  private readonly more = el("details", {}, el("summary", {}, "More"));
+  private readonly start = el("button", { type: "submit", class: "primary" }, "Start");
   private readonly reason = el("p", { class: "reason", hidden: true, attrs: { role: "status" } });
 
-  constructor(verb: Verb, files: readonly NamedFile[], start: (given: Record<string, unknown>) => void) {
-    this.start = el("button", { type: "submit", class: "primary" }, `Start ${verb.verb}`);
+  constructor(verb: Verb, { folder }: HostState, private readonly fields: readonly Field[], start: (given: Given) => void) {
     reasonFor(this.reason, this.start);
-    const names = el("datalist", { attrs: { id: "host-files" } }, ...files.map(({ name }) => el("option", { value: name })));
-    this.fields = verb.arguments.map((argument) => ({ argument, input: field(argument) }));
-    const rows = this.fields.map(({ argument, input }) => ({ argument, row: row(argument, input) }));
-    const needed = rows.filter(({ argument }) => argument.required);
-    const others = rows.filter(({ argument }) => !argument.required);
-    this.element.append(el("p", {}, verb.help), names, ...needed.map(({ row }) => row),
-      this.start, this.reason);
-    if (others.length) {
-      const more = el("details", { attrs: needed.length ? {} : { open: "" } }, el("summary", {}, needed.length ? "More" : "Options"), ...others.map(({ row }) => row));
-      this.element.append(more);
-    }
+    const first = fields.filter(({ argument }) => argument.first);
+    const others = fields.filter(({ argument }) => !argument.first);
+    this.more.append(...others.map(({ element }) => element));
+    this.element.append(el("h2", {}, verb.title, " ", el("code", {}, verb.verb)), el("p", {}, verb.help),
+      ...first.map(({ element }) => element), ...(others.length ? [this.more] : []), this.start, this.reason,
+      ...(fields.some(({ argument }) => argument.kind === "file") ? [el("p", { class: "quiet" }, "Files are in ", el("code", {}, folder), ".")] : []));
     this.element.addEventListener("submit", (event) => {
       event.preventDefault();
-      start(this.given());
+      for (const field of fields) field.blame("");
+      const wrong = fields.find((field) => field.problem());
+      if (wrong) this.show(wrong, wrong.problem());
+      else start(this.given());
     });
   }
 
   /** Takes no start as long as there is a reason. */
-  show(reason: string): void {
+  refuse(reason: string): void {
     grey(this.start, reason, "");
     showReason(this.reason, reason);
   }
 
-  /** Fills in values of arguments by their names, as `given` has them. */
-  fill(given: Readonly<Record<string, unknown>>): void {
-    for (const { argument, input } of this.fields) {
-      const value = given[argument.name];
-      if (value === undefined) continue;
-      if (argument.kind === "flag") (input as HTMLInputElement).checked = value === true;
-      else input.value = Array.isArray(value) ? value.join(", ") : String(value);
-      input.closest("details")?.setAttribute("open", "");
+  fill(given: Given): void {
+    for (const field of this.fields) {
+      const value = given[field.argument.name];
+      if (value !== undefined) field.set(value);
+      if (value !== undefined && !field.argument.first) this.more.open = true;
     }
+  }
+
+  /** Says a sentence beside the field that it is about; false where it names none. */
+  blame(sentence: string): boolean {
+    const found = this.about(sentence);
+    if (!found) return false;
+    const label = (option: string): string => {
+      const field = this.fields.find(({ argument }) => argument.option === option);
+      return field ? `"${field.argument.label}"` : option;
+    };
+    this.show(found, sentence.replace(OPTION, label));
+    return true;
+  }
+
+  /** The field that a sentence names: by its label, its word on the command line, or a file that was given there. */
+  private about(sentence: string): Field | undefined {
+    const option = sentence.match(OPTION)?.find((one) => this.fields.some(({ argument }) => argument.option === one));
+    const begins = (text: string): boolean => sentence.startsWith(`${text}:`) || sentence.startsWith(`${text},`) || sentence.startsWith(`${text} is `);
+    return this.fields.find(({ argument }) => begins(argument.label))
+      ?? this.fields.find((field) => [field.value()].flat().some((value) => typeof value === "string" && begins(value)))
+      ?? this.fields.find(({ argument }) => option !== undefined && argument.option === option);
+  }
+
+  private show(field: Field, sentence: string): void {
+    if (this.more.contains(field.element)) this.more.open = true;
+    field.blame(sentence);
+    const { activeElement } = document;
+    if (activeElement === document.body || activeElement === this.start) field.focus();
   }
 
   /** The values that a person gave; what was left as it is, is left out. */
-  private given(): Record<string, unknown> {
-    const given: Record<string, unknown> = {};
-    for (const { argument, input } of this.fields) {
-      if (argument.kind === "flag") {
-        if ((input as HTMLInputElement).checked) given[argument.name] = true;
-      } else if (input.value.trim()) {
-        const texts = argument.many ? input.value.split(",").map((text) => text.trim()) : [input.value.trim()];
-        const values = argument.kind === "number" ? texts.map(Number) : texts;
-        given[argument.name] = argument.many ? values : values[0];
-      }
-    }
-    return given;
+  private given(): Given {
+    const values = this.fields.map((field) => [field.argument.name, field.value()] as const);
+    return Object.fromEntries(values.filter(([, value]) => value !== undefined));
   }
-}
-
-function field(argument: Argument): HTMLInputElement | HTMLSelectElement {
-  if (argument.kind === "choice" && !argument.many) {
-    return el("select", {}, el("option", { value: "" }, "as usual"), ...argument.choices.map((one) => el("option", { value: one }, one)));
-  }
-  if (argument.kind === "flag") return el("input", { type: "checkbox" });
-  const input = el("input", {
-    type: argument.kind === "number" && !argument.many ? "number" : "text",
-    attrs: {
-      ...(argument.kind === "file" ? { list: "host-files" } : {}),
-      ...(argument.kind === "number" ? { step: "any" } : {}),
-      ...(argument.default === null || argument.default === undefined ? {} : { placeholder: String(argument.default) }),
-    },
-  });
-  input.required = argument.required;
-  return input;
-}
-
-function row(argument: Argument, input: HTMLElement): HTMLElement {
-  const more = argument.many ? " (several: with commas between)" : "";
-  input.id = `argument-${argument.name}`;
-  const help = el("span", { class: "quiet", attrs: { id: `${input.id}-help` } }, argument.help + more);
-  input.setAttribute("aria-describedby", help.id);
-  return el("div", { class: "argument" },
-    el("label", { attrs: { for: input.id } }, argument.name.replace(/_/g, " ")), input, help);
 }
