@@ -32,15 +32,15 @@ def enable(page: Page) -> None:
     await_state(page, "following")
 
 
-def test_the_page_saves_and_shows_the_boards_samples_as_they_are(page: Page, stage: Stage, tmp_path: Path) -> None:
+def test_the_page_saves_and_shows_the_boards_samples_as_they_are(page: Page, stage: Stage) -> None:
     enable(page)
     begun = stage.newest().tick
     stage.wait_for(lambda: stage.newest().tick > begun + LEAST_LOG)
     page.get_by_role("button", name="Pause").click()
-    with page.expect_download() as saved:
-        page.get_by_role("button", name="Save view").click()
-    saved.value.save_as(tmp_path / "view.csv")
-    log = read_log(tmp_path / "view.csv")
+    page.get_by_role("button", name="Save view").click()
+    expect(page.get_by_text(f"is in {stage.folder}, and in the view Files.")).to_be_visible()
+    (saved,) = stage.folder.glob("view-*.csv")
+    log = read_log(saved)
     assert log.condition.check is Check.WHOLE
     sent = {sample.tick: sample for sample in stage.samples()}
     ticks = np.round(log.time * 1000).astype(int)
@@ -157,7 +157,7 @@ def test_without_a_board_the_page_says_what_to_do_and_takes_one_that_comes(
     stage.plugged.clear()
     with stage.open(), stages.visit(context, stage) as visit:
         expect(visit.page.get_by_text("Plug the board in by USB")).to_be_visible()
-        visit.page.get_by_role("button", name="Logs").click()
+        visit.page.get_by_role("button", name="Files").click()
         expect(visit.page.get_by_text("Plug the board in by USB")).to_be_hidden()
         visit.page.get_by_role("button", name="Live").click()
         expect(visit.page.get_by_text("Plug the board in by USB")).to_be_visible()

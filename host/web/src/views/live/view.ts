@@ -1,12 +1,13 @@
 // The live view: charts of every tick, what stands under the cursor, running measures, capture and export.
 
-import { button, download, el, select, setText, tableHead } from "../../parts/dom";
+import { button, el, select, setText, tableHead } from "../../parts/dom";
 import { themeChanged } from "../../parts/theme";
 import type { View } from "../view";
 import { logText } from "../../files/log";
 import { JOINT_NAMES, QUANTITIES, QUANTITY_TITLES, TICKS_A_SECOND } from "../../session/samples";
 import type { Session } from "../../session/session";
 import { Charts } from "./charts";
+import { DOWNLOADS, type Keeper } from "./keep";
 import { MeasuresTable } from "./measures_table";
 import { StatePanel } from "./state_panel";
 import { moveByKey, timeButtons } from "./time_buttons";
@@ -27,10 +28,11 @@ export class LiveView implements View {
   private readonly moment = el("th", { attrs: { scope: "col" } }, "joint");
   private readonly measures: MeasuresTable;
   private readonly trigger: TriggerPanel;
-  private readonly record = button("Record", () => this.recordOrEnd(), { title: "Begin a log; its end keeps it as a file that greywhale reads" });
+  private readonly record: HTMLButtonElement;
   private recordedFrom: number | null = null; // sample
 
-  constructor(private readonly session: Session) {
+  constructor(private readonly session: Session, private readonly keeper: Keeper = DOWNLOADS) {
+    this.record = button("Record", () => this.recordOrEnd(), { title: `Begin a log; its end ${keeper.where}` });
     this.window = new TimeWindow(session.samples);
     this.charts = new Charts([{ samples: session.samples, shade: (shades, joint) => shades.joints[joint]! }], this.window);
     this.measures = new MeasuresTable(session.samples);
@@ -50,7 +52,7 @@ export class LiveView implements View {
       this.pause,
       this.span,
       ...timeButtons(this.window),
-      button("Save view", () => void this.session.attempt(() => this.export()), { title: "Keep what is in view as a log that greywhale reads" }),
+      button("Save view", () => void this.session.attempt(() => this.export()), { title: `Makes a log of what is in view, and ${this.keeper.where}` }),
       this.record,
       this.resolution);
   }
@@ -100,7 +102,8 @@ export class LiveView implements View {
   private async keep(name: string, from: number, to: number): Promise<void> {
     const { samples, hello } = this.session;
     const begin = (samples.timeOf(from) / TICKS_A_SECOND).toFixed(0);
-    download(`${name}-${begin}s.csv`, logText(samples, from, to, { hello, raw: await this.session.readParameters() }));
+    const text = logText(samples, from, to, { hello, raw: await this.session.readParameters() });
+    this.session.tell(await this.keeper.keep(`${name}-${begin}s.csv`, text), "info");
   }
 
   enter(): void {

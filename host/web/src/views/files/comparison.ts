@@ -1,8 +1,7 @@
-// The logs of the host's folder: one, or two laid over each other, with the paper's measures of each.
+// Logs laid over each other, with the paper's measures of each.
 
 import { button, el, select, setText, tableHead } from "../../parts/dom";
 import { themeChanged } from "../../parts/theme";
-import type { View } from "../view";
 import type { Services } from "../../session/services";
 import { Charts } from "../live/charts";
 import { moveByKey, timeButtons } from "../live/time_buttons";
@@ -15,28 +14,25 @@ const MOST_CHOSEN = 2;
 
 type Chosen = { readonly name: string; readonly samples: Samples };
 
-export class LogsView implements View {
-  readonly name = "Logs";
-  readonly withoutBoard = true;
-  readonly element: HTMLElement;
+export class LogComparison {
+  readonly element = el("div", { class: "comparison", hidden: true });
   private chosen: readonly Chosen[] = [];
-  private names: readonly string[] = []; // as chosen, before they are all read
+  /** The logs as they were chosen, before they are all read. */
+  names: readonly string[] = [];
   private joint = 0;
   private stale = true;
   private readonly extent = { firstTime: 0, lastTime: 0 };
   private readonly window = new TimeWindow(this.extent, Infinity);
   private readonly charts = new Charts([], this.window);
   private readonly measures: LogMeasures;
-  private readonly list = el("div", { class: "logs-list", attrs: { role: "group", "aria-label": "Logs of the folder" } });
   private readonly moment = el("th", { attrs: { scope: "col" } }, "at the cursor");
   private readonly values = el("tbody");
-  private readonly picture = el("div", { hidden: true });
-  private readonly hint = el("p", { class: "quiet" }, "Choose a log, or two to lay them over each other.");
 
-  constructor(private readonly session: Session, private readonly services: Services) {
-    this.measures = new LogMeasures(services);
+  /** `marked` hears when other logs are chosen. */
+  constructor(session: Session, private readonly services: Services, private readonly marked: () => void) {
+    this.measures = new LogMeasures(services, (act) => session.attempt(act));
     const joints = Array.from({ length: JOINTS }, (_, joint) => [String(joint), `joint ${joint}`] as const);
-    this.picture.append(
+    this.element.append(
       el("div", { class: "tools", attrs: { role: "toolbar", "aria-label": "Time and joint" } },
         select("Joint shown", joints, (joint) => this.showJoint(Number(joint))),
         button("Whole", () => this.showAll(), { title: "Show all of the logs (double click)" }),
@@ -45,44 +41,23 @@ export class LogsView implements View {
       this.charts.element,
       el("table", { class: "values" }, tableHead(this.moment, ...QUANTITY_TITLES), this.values),
       this.measures.element);
-    this.element = el("div", { class: "logs" },
-      el("section", { class: "card" }, el("h2", {}, "Logs"), this.hint, this.list), this.picture);
     this.charts.showOnly(this.joint);
     this.charts.element.addEventListener("dblclick", () => this.showAll());
     this.window.changed.on(() => { this.stale = true; });
     themeChanged.on(() => this.rebuild());
   }
 
-  enter(): void {
-    this.rebuild();
-    void this.session.attempt(() => this.refresh());
-  }
-
-  private rebuild(): void {
+  rebuild(): void {
     this.charts.rebuild();
     this.stale = true;
   }
 
-  private async refresh(): Promise<void> {
-    const logs = (await this.services.state()).files.filter(({ kind }) => kind === "log");
-    if (!logs.length) setText(this.hint, "The folder holds no log yet: record one in the view Do.");
-    else setText(this.hint, "Choose a log, or two to lay them over each other.");
-    this.list.replaceChildren(...logs.map(({ name }) => button(name, () => void this.session.attempt(() => this.choose(name)))));
-    this.markChosen();
-  }
-
-  private markChosen(): void {
-    for (const choice of this.list.children) {
-      choice.setAttribute("aria-pressed", String(this.names.includes(choice.textContent ?? "")));
-    }
-  }
-
   /** Takes a log, in place of the oldest choice where there are enough; or puts back one that was chosen. */
-  private async choose(name: string): Promise<void> {
+  async choose(name: string): Promise<void> {
     const names = this.names.includes(name)
       ? this.names.filter((one) => one !== name) : [...this.names, name].slice(-MOST_CHOSEN);
     this.names = names;
-    this.markChosen();
+    this.marked();
     const read = await Promise.allSettled(names.map((one) => this.read(one)));
     if (this.names !== names) return; // a later choice goes on
     const sound = read.flatMap((one) => one.status === "fulfilled" ? [one.value] : []);
@@ -90,9 +65,14 @@ export class LogsView implements View {
     const before = refused ? this.chosen.filter((one) => !names.includes(one.name)) : []; // they make room for nothing
     this.lay([...before, ...sound].slice(-MOST_CHOSEN));
     this.names = this.chosen.map((one) => one.name);
-    this.markChosen();
+    this.marked();
     await this.measures.measure(this.names);
     if (refused) throw refused.reason;
+  }
+
+  /** Forgets logs that are no longer there as they were read. */
+  async drop(gone: string): Promise<void> {
+    if (this.names.includes(gone)) await this.choose(gone);
   }
 
   private async read(name: string): Promise<Chosen> {
@@ -101,7 +81,7 @@ export class LogsView implements View {
 
   private lay(chosen: readonly Chosen[]): void {
     this.chosen = chosen;
-    this.picture.hidden = !chosen.length;
+    this.element.hidden = !chosen.length;
     this.extent.lastTime = Math.max(0, ...chosen.map(({ samples }) => samples.lastTime));
     this.charts.lay(chosen.map(({ samples }, place) => ({ samples, shade: (shades) => shades.joints[place]! })));
     this.values.replaceChildren(...chosen.map(({ name }, place) => el("tr", {},

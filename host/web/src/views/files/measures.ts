@@ -26,8 +26,9 @@ export class LogMeasures {
   private joint = 0;
   private asked = ""; // the id of the job that measures them
   private readonly ended = new Map<string, Job>(); // jobs of evaluate, which may end before their id is known here
+  private readonly own = new Set<string>(); // jobs that were asked for here; their cards stand nowhere else
 
-  constructor(private readonly services: Services) {
+  constructor(private readonly services: Pick<Services, "jobs">, private readonly attempt: (act: () => Promise<void>) => Promise<boolean>) {
     this.element.append(
       el("div", { class: "scroll", attrs: { tabindex: "0", role: "region", "aria-label": "Measures" } },
         el("table", { class: "values" }, tableHead("log", ...COLUMNS.map(([title]) => title)), this.body)),
@@ -36,7 +37,15 @@ export class LogMeasures {
       if (job.verb !== "evaluate" || job.state === "running") return;
       this.ended.set(job.id, job);
       if (job.id === this.asked) this.show();
+      this.putAway(job.id);
     });
+  }
+
+  /** Takes the card of an own job that has ended out of the list of all jobs: its result stands here. */
+  private putAway(id: string): void {
+    if (!this.own.has(id) || !this.ended.has(id)) return;
+    this.own.delete(id);
+    void this.attempt(() => this.services.jobs.putAway(id));
   }
 
   /** Has these logs measured. */
@@ -46,6 +55,8 @@ export class LogMeasures {
     this.show();
     if (!logs.length) return;
     const id = await this.services.jobs.start("evaluate", { logs });
+    this.own.add(id);
+    this.putAway(id);
     if (this.logs !== logs) return; // others were chosen meanwhile
     this.asked = id;
     this.show();

@@ -1,4 +1,4 @@
-"""The logs of the folder on the page: one laid over the other, with the measures and the sentences of a terminal."""
+"""The folder's files on the page: brought, renamed, deleted, used; logs over each other with a terminal's measures."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def test_two_logs_lie_over_each_other_and_what_is_none_is_told_as_in_a_terminal(
 def require_two_logs_with_the_measures_of_evaluate(page: Page, folder: Path) -> None:
     for name, lag in LAG_TICKS.items():
         write(folder / name, lag)
-    page.get_by_role("button", name="Logs").click()
+    page.get_by_role("button", name="Files", exact=True).click()
     for name in LAG_TICKS:
         page.get_by_role("button", name=name).click()
     page.get_by_label("Joint shown").select_option(str(JOINT))
@@ -71,10 +71,56 @@ def require_two_logs_with_the_measures_of_evaluate(page: Page, folder: Path) -> 
         told = [float(text) for text in shown.nth(row).locator("td").all_inner_texts()]
         led, followed = log.leader[tick, JOINT], log.follower[tick, JOINT]
         assert told[:3] == pytest.approx([led, followed, led - followed], abs=1.1e-3)
+    page.get_by_role("button", name="Do", exact=True).click()
+    expect(page.locator(".job")).to_have_count(0)  # the measures stand in the view Files
+
+
+def test_a_file_is_brought_used_renamed_and_deleted(shared_page: Page, stage: Stage) -> None:
+    page, folder = shared_page, stage.folder
+    write(folder / "kept.csv", 40)
+    content = (folder / "kept.csv").read_bytes()
+    page.get_by_role("button", name="Files", exact=True).click()
+    expect(page.get_by_text(str(folder))).to_be_visible()
+    bring = page.get_by_label("Bring files here, or drop them on this list")
+    bring.set_input_files(folder / "kept.csv")
+    page.get_by_role("button", name="Keep both").click()
+    page.get_by_role("button", name="kept-2.csv").click()
+    assert (folder / "kept-2.csv").read_bytes() == content
+    page.get_by_role("button", name="Rename", exact=True).click()
+    page.get_by_label("New name").fill("other.csv")
+    page.get_by_label("New name").press("Enter")
+    actions = page.get_by_role("group", name="The chosen file")
+    expect(actions.get_by_role("heading")).to_have_text("other.csv")
+    with page.expect_download() as kept:
+        actions.get_by_role("button", name="Download").click()
+    assert kept.value.suggested_filename == "other.csv"
+    assert kept.value.path().read_bytes() == content
+    actions.get_by_role("button", name="Find a model of the arm").click()
+    form = page.locator(".verb-form")
+    expect(form.locator("[name=logs][value='other.csv']")).to_be_checked()
+    expect(form.locator("[name=logs][value='kept.csv']")).not_to_be_checked()
+    page.get_by_role("button", name="Files", exact=True).click()
+    for answer, stays in (("Keep it", True), ("Delete it", False)):
+        actions.get_by_role("button", name="Delete", exact=True).click()
+        page.get_by_role("button", name=answer).click()
+        expect(page.get_by_role("button", name="other.csv")).to_have_count(int(stays))
+        assert (folder / "other.csv").is_file() is stays
+
+
+def test_a_recording_of_the_view_live_is_in_the_folder(shared_page: Page, stage: Stage) -> None:
+    page = shared_page
+    page.get_by_role("button", name="Live", exact=True).click()
+    page.get_by_role("button", name="Record", exact=True).click()
+    stage.live(0.2)
+    page.get_by_role("button", name="End recording").click()
+    said = page.get_by_role("alert").filter(has_text=f"is in {stage.folder}, and in the view Files.")
+    expect(said).to_be_visible()
+    (file,) = stage.folder.glob("recording-*.csv")
+    assert read_log(file).time.size > 100
 
 
 def require_an_error_beside_a_log(page: Page) -> None:
-    page.get_by_role("button", name="Logs").click()
+    page.get_by_role("button", name="Files", exact=True).click()
     for name in ("late.csv", "bad.csv"):
         page.get_by_role("button", name=name).click()
     told = page.get_by_role("alert").first
