@@ -6,10 +6,11 @@ import { LeaderControl } from "../views/bench/leader_control";
 import { BenchView } from "../views/bench/view";
 import { ControllerView } from "../views/controller/view";
 import { Countdown } from "../views/verbs/countdown";
+import { FilesView } from "../views/files/view";
 import { DoView } from "../views/verbs/view";
 import type { Services } from "../session/services";
 import { LiveView } from "../views/live/view";
-import { LogsView } from "../views/logs/view";
+import { inFolder } from "../views/live/keep";
 import { el } from "../parts/dom";
 import { startTheme } from "../parts/theme";
 import { Session } from "../session/session";
@@ -28,15 +29,22 @@ function begin({ token, sentence }: Access): void {
     "Plug the board in by USB: this page takes it by itself. Without a board, start ", el("code", {}, "greywhale dashboard --sim"),
     ": it brings a simulated arm with the real firmware.",
   ];
-  const shell = new Shell(session, [new LiveView(session)], token ? remedy : []); // without a token no board would help
-  if (token) addServices(shell, session, new HostServices(token, () => board.page));
+  const services = new HostServices(token, () => board.page);
+  const live = new LiveView(session, token ? inFolder(services) : undefined);
+  const shell = new Shell(session, [live], token ? remedy : []); // without a token no board would help
+  if (token) addServices(shell, session, services);
 }
 
 /** Adds what needs a host beside the board. */
 function addServices(shell: Shell, session: Session, services: Services): void {
   document.body.append(new Countdown(session, services.jobs).element);
   const arm = new ArmView(session, services);
-  for (const view of [arm, new ControllerView(session, services), new DoView(session, services), new LogsView(session, services)]) {
+  const verbs = new DoView(session, services);
+  const files = new FilesView(session, services, (verb, given) => {
+    shell.show(verbs);
+    void verbs.open(verb, given);
+  });
+  for (const view of [arm, new ControllerView(session, services), verbs, files]) {
     shell.add(view);
   }
   void session.attempt(async () => {
