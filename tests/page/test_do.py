@@ -190,6 +190,9 @@ def test_a_form_says_beside_its_field_what_is_wrong(desk: Page, stage: Stage) ->
     said = '"Seed of the random numbers" belongs to "Let greywhale lead the arm"; add that, or leave it out.'
     expect(form.get_by_role("alert")).to_have_text(said)
     expect(form.get_by_label("Seed of the random numbers", exact=True)).to_be_focused()
+    form.get_by_label("Seed of the random numbers", exact=True).fill("4")
+    card.get_by_role("button", name="Change and repeat").click()
+    expect(form.get_by_label("Seed of the random numbers", exact=True)).to_have_value("3")
     card.get_by_role("button", name="Put away").click()
     expect(desk.get_by_text("belongs to --excite")).to_have_count(0)
 

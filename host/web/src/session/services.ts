@@ -124,6 +124,7 @@ export type Json = null | boolean | number | string | readonly Json[] | { readon
 export type Job = {
   readonly id: string;
   readonly verb: string;
+  readonly arguments: Readonly<Record<string, unknown>>;
   readonly state: "running" | "done" | "failed" | "stopped";
   readonly progress: { readonly done: number; readonly total: number; readonly text: string; readonly note: string } | null;
   /** Seconds until the arm moves; 0: it is not counted. */

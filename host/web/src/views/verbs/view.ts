@@ -131,13 +131,14 @@ export class DoView implements View {
     if (error) this.shown?.form.blame(error);
   }
 
-  private add({ id, verb, state }: Job): Shown {
+  private add({ id, verb, arguments: given, state }: Job): Shown {
     const card = new JobCard(id, verb, this.services.jobs, (act) => void this.session.attempt(act), {
-      open: (next, given) => void this.open(next, given),
+      open: (next, filled) => void this.open(next, filled),
       log: (file) => this.services.log(file),
     });
     const away = button("Put away", () => void this.session.attempt(() => this.services.jobs.putAway(id)), { title: "Take this card away; files stay" });
-    card.element.append(el("div", { class: "row away" }, away));
+    const again = button("Change and repeat", () => void this.open(verb, given), { title: `Opens the form of ${verb} as it was filled in` });
+    card.element.append(el("div", { class: "row away" }, again, away));
     const shown = { element: card.element, card, away, ended: false, error: "" };
     this.cards.set(id, shown);
     this.none.remove();
