@@ -86,7 +86,6 @@ def test_a_prediction_is_the_closed_loops() -> None:
         assert np.diff(told["time_s"]) == pytest.approx(ROW_EVERY_TICKS / 1000)
         mean = np.mean((leader - follower) ** 2, axis=0)
         assert told["mse"] == pytest.approx(mean, rel=0.05)
-        assert np.abs(told["voltage"]).max() > 1.0
 
 
 def test_how_a_board_is_wired_is_none_of_the_models() -> None:

@@ -11,17 +11,23 @@ from typing import Any
 
 import numpy as np
 
+from greywhale.arm import PotentiometerBank
+from greywhale.arm.parameters import ArmParameters
+from greywhale.arm.plants import plant_row
 from greywhale.base.limits import numbers_in
 from greywhale.base.types import Floats
+from greywhale.dashboard import predict
+from greywhale.files.arm import load_arm
 from greywhale.files.trajectory import Trajectory
 from greywhale.fuzzy.settings import LEAST_WIDTH, SET_UNIT
 from greywhale.loop.closed_loop import Timing, settings_numbers, with_right_motors
-from greywhale.loop.leader import SLICE_S
+from greywhale.loop.leader import SLICE_S, straight_slices
 from greywhale.measure import swings
 from greywhale.measure.runs import stretches
 from greywhale.optimise import shift_invariant
 from greywhale.optimise.optimiser import PACK
-from greywhale.protocol.firmware import JOINTS
+from greywhale.protocol.firmware import JOINTS, pwm_steps
+from greywhale.protocol.schema import Board
 from greywhale.protocol.table import CONTROLLER_COLUMNS
 from greywhale.tune import default, possible
 from greywhale.tune.judge import margins
@@ -37,29 +43,24 @@ SEED = 0
 SHOWN = 1  # the class of motions that a person sees: human-like reaches
 
 
-def steps_of(motion: Trajectory) -> list[list[int]]:
+def packed(rows: Floats) -> list[list[int]]:
     """Of each joint its steps from row to row in SCALE_RAD, the first from 0; after each 0 comes how many there are."""
-    packed = []
-    for steps in np.diff(np.rint(motion.angles / SCALE_RAD).astype(int), axis=0, prepend=0).T:
+    joints = []
+    for steps in np.diff(np.rint(rows / SCALE_RAD).astype(int), axis=0, prepend=0).T:
         numbers: list[int] = []
         for step in map(int, steps):
             if step == 0 and len(numbers) > 1 and numbers[-2] == 0:
                 numbers[-1] += 1
             else:
                 numbers += [step] if step else [0, 1]
-        packed.append(numbers)
-    return packed
+        joints.append(numbers)
+    return joints
 
 
-def straight_slices(motion: Trajectory, wait_s: float) -> Floats:
-    """The angles (rad) in every slice: the first row for `wait_s`, then straight lines between the rounded rows."""
+def page_slices(motion: Trajectory, wait_s: float) -> Floats:
+    """The angles (rad) in every slice as a page has them."""
     rows = np.rint(motion.angles / SCALE_RAD) / round(1.0 / SCALE_RAD)
-    slices = 4 * int(np.ceil((wait_s + motion.duration_s) / (4 * SLICE_S) - 1e-9))
-    at = np.maximum(np.arange(slices) - round(wait_s / SLICE_S), 0)
-    row = np.minimum(at // APART, len(rows) - 2)
-    share = np.minimum((at - row * APART) / APART, 1.0)[:, None]
-    angles: Floats = rows[row] + share * (rows[row + 1] - rows[row])
-    return angles
+    return straight_slices(rows, APART, wait_s)
 
 
 def tuner_data() -> dict[str, Any]:
@@ -90,6 +91,7 @@ def tuner_data() -> dict[str, Any]:
             "judging": _rests(model, LIMITS.margins.long_rest_s, 1, 1.0, LIMITS.swings.limit_cycle),
         },
         "limits": _limits(model.table.supply_v),
+        "predicted": _predicted(load_arm("default")),
         "search": _search(model),
     }
 
@@ -108,6 +110,25 @@ def _noise(seed: int) -> dict[str, Any]:
     return {"seeds": [seed, seed + 1], "gaps": np.random.default_rng(seed).uniform(-1.0, 1.0, JOINTS).tolist()}
 
 
+def _predicted(arm: ArmParameters) -> dict[str, Any]:
+    """The arm and the motions of a prediction, as `greywhale.dashboard.predict` has them."""
+    return {
+        "plant": plant_row(arm).tolist(),
+        "leader_pots": pot_numbers(quiet(arm.leader_pots)),
+        "follower_pots": pot_numbers(quiet(arm.follower_pots)),
+        "motions": {name: packed(rows) for name, rows in predict.motions().items()},
+        "noise": _noise(predict.SEED),
+        "wait_s": predict.BEFORE_S,
+        "every": predict.ROW_EVERY_TICKS,
+        "pwm_tops": {str(int(board)): pwm_steps(board) for board in Board},
+    }
+
+
+def quiet(bank: PotentiometerBank) -> PotentiometerBank:
+    """These potentiometers without noise."""
+    return bank.model_copy(update={"joint": tuple(pot.model_copy(update={"noise": 0.0}) for pot in bank.joint)})
+
+
 def _drills(model: Model) -> list[dict[str, Any]]:
     motions = training.training_motions(model.arm, model.table, model.plants, SEED)
     floors = possible.scale_of(motions, model.plants, model.controllers).floor[0]
@@ -117,7 +138,7 @@ def _drills(model: Model) -> list[dict[str, Any]]:
         drills.append(
             {
                 "name": drill.name,
-                "steps": steps_of(drill.motion),
+                "steps": packed(drill.motion.angles),
                 "searching": _noise(training.noise_seed(SEED, number)),
                 "judging": _noise(training.noise_seed(SEED + default.JUDGING_SEED, number)),
                 # None where all ticks weigh the same.
@@ -134,7 +155,7 @@ def _drills(model: Model) -> list[dict[str, Any]]:
 def _rests(model: Model, rest_s: float, noise: int, beyond: float, cycle: swings.Hunting) -> dict[str, Any]:
     motion = margins.stops(*training.reach(model.arm, model.table, model.plants), rest_s)
     return {
-        "steps": steps_of(motion),
+        "steps": packed(motion.angles),
         "noise": _noise(margins.noise_seed(SEED, noise)),
         "ticks": margins.rest_ticks(rest_s),
         "variants": [rows[0].tolist() for rows in margins.variants_of(model.plants, beyond).values()],

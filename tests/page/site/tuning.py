@@ -16,13 +16,13 @@ from greywhale.tune.limits import WITHOUT_FLOORS
 from greywhale.tune.model import load_model
 from greywhale.tune.request import TuningRequest
 from greywhale.tune.search.journal import TuningJournal
-from tools.site.tuner_data import SEED, straight_slices
+from tools.site.tuner_data import SEED, page_slices
 
 PACK, BUDGET = 4, 40  # every stage has more than its first pack where it can
 
 
 def straight(motion: Trajectory, wait_s: float, resample: bool = False) -> Floats:
-    return straight_slices(motion, wait_s)
+    return page_slices(motion, wait_s)
 
 
 def tuning() -> dict[str, Any]:

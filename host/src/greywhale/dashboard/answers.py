@@ -161,6 +161,6 @@ class Answers:
         return {"headings": arm_answers.questions(asked.get("answers"), self.folder)}
 
     def _arm(self, file: str | None) -> ArmParameters:
-        if file is None:
+        if file is None or file == self.arm:
             return load_arm(self.arm)
         return load_arm(file if file in arm_names() else self.folder.file(file))

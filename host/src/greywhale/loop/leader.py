@@ -26,6 +26,19 @@ def leader_slices(motion: Trajectory, wait_s: float, resample: bool = False) -> 
     return np.ascontiguousarray(motion.at(times))
 
 
+def straight_slices(rows: Floats, apart: int, wait_s: float) -> Floats:
+    """Leader angles (rad) in every slice: first row for `wait_s`, then straight lines between rows (n, 4) that are
+    `apart` slices from each other. A page makes them from the same few numbers, to the bit.
+    """
+    wait = round(wait_s / SLICE_S)
+    ticks = int(np.ceil((wait + (len(rows) - 1) * apart) / SLICES_PER_TICK))
+    at = np.maximum(np.arange(ticks * SLICES_PER_TICK) - wait, 0)
+    row = np.minimum(at // apart, len(rows) - 2)
+    share = np.minimum((at - row * apart) / apart, 1.0)[:, None]
+    angles: Floats = rows[row] + share * (rows[row + 1] - rows[row])
+    return angles
+
+
 def _require_even(motion: Trajectory) -> None:
     spacing = np.diff(motion.time_s)
     usual = float(np.median(spacing))
