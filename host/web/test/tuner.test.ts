@@ -45,6 +45,6 @@ test("another judge of the same module begins anew, and refuses limits of anothe
 test("a search that is ended at once leaves the controllers as they are, and shows them twice", () => {
   const tuning = new Tuning(module, data, golden.before);
   tuning.run().next();
-  const { after, calmed, followers: [first, second], mse } = tuning.result();
-  assert.deepEqual([after, calmed, second, mse[1]], [golden.before, [], first, mse[0]]);
+  const { before, after, notes, followers: [first, second], mse } = tuning.result();
+  assert.deepEqual([before, after, notes, second, mse[1]], [golden.before, golden.before, [], first, mse[0]]);
 });

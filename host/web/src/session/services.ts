@@ -42,16 +42,26 @@ export type Heading = { readonly heading: string; readonly questions: readonly Q
 /** Answers by the questions' names; or a file of the folder that has some. */
 export type ArmAnswers = string | { readonly [where: string]: string };
 
-/** A motion and how a model follows it: rows of four joints, rad and V. */
+/** A motion and how a model follows it: rows of four joints, rad. */
 export type Predicted = {
   readonly time_s: readonly number[];
   readonly leader: readonly (readonly number[])[];
   readonly follower: readonly (readonly number[])[];
-  readonly voltage: readonly (readonly number[])[];
-  readonly mse: readonly number[];
+  readonly mse: readonly number[]; // of each joint, over the whole motion
 };
 
 export type Prediction = { readonly step: Predicted; readonly reach: Predicted };
+
+/** An arm that can be predicted and tuned for; `says` tells a person what it is, in a sentence. */
+export type Model = { readonly name: string; readonly identified: boolean; readonly says: string };
+
+/** Predicts how an arm follows with controllers that nobody has uploaded yet. */
+export interface Predictor {
+  /** The arms there are; the first is the one to begin with. */
+  models(): Promise<readonly Model[]>;
+  /** Predicts a whole parameter set in raw values, on a board by its number. */
+  predict(raw: readonly number[], board: number, model: Model): Promise<Prediction>;
+}
 
 export type ArmDescription = {
   readonly name: string;
@@ -149,29 +159,34 @@ export interface Jobs {
   listen(heard: (job: Job) => void, gone?: (id: string) => void): void;
 }
 
-/** The progress of a search for controllers: the best cost of each joint, now and after each batch. */
+/** The progress of a search for controllers. */
 export type Searched = {
-  readonly evaluations: number;
-  readonly budget: number;
-  readonly cost: readonly number[];
-  readonly curve: readonly (readonly [evaluations: number, cost: readonly number[]])[];
+  readonly share: number; // 0 to 1
+  readonly words: string;
+  /** The best cost so far after each batch: of each joint, or one of all joints together. `unit` is that of `x`. */
+  readonly curve: { readonly unit: string; readonly x: readonly number[]; readonly y: readonly (readonly number[])[] };
 };
 
-/** The result of a search, and how the arm then follows a hand and did before: rows of four joints, rad. */
+type Controllers = readonly (readonly number[])[]; // four joints' settings in raw values, in the order of the table
+
+/** The result of a search, and how the arm follows a hand with it and did before: rows of four joints, rad. */
 export type Tuned = {
-  readonly after: readonly (readonly number[])[]; // four joints' settings, in the order of the table
-  /** Joints that were not steady enough as they were found: they have less voltage or integral, or what they had. */
-  readonly calmed: readonly { readonly joint: number; readonly as_before: boolean }[];
-  readonly time_s: readonly number[];
+  readonly before: Controllers; // with which the search began
+  readonly after: Controllers;
+  readonly notes: readonly string[]; // sentences
+  readonly mse: readonly (readonly number[])[]; // before, after; of each joint. Empty where nobody has judged it
+  readonly time_s: readonly number[]; // empty where there is no picture
   readonly leader: readonly (readonly number[])[];
   readonly followers: readonly (readonly (readonly number[])[])[]; // before, after
-  readonly mse: readonly (readonly number[])[]; // before, after; of each joint
 };
 
-/** Searches controllers within the page. */
+/** Searches controllers. */
 export interface Tuner {
-  /** Tunes from four joints' settings on; one at a time. */
-  tune(before: readonly (readonly number[])[], heard: (searched: Searched) => void): Promise<Tuned>;
+  /** Sentences on what it does, and what it does not. */
+  readonly promise: string;
+  readonly limits: string;
+  /** Tunes for a model, and begins with four joints' settings where it can; one tuning at a time. */
+  tune(before: Controllers, model: Model, heard: (searched: Searched) => void): Promise<Tuned>;
   /** Ends the search with the best so far. */
   stop(): void;
 }
@@ -182,12 +197,12 @@ export interface Services {
   readonly files: Files;
   /** The questions of `arm new` that follow from the answers so far. */
   questions(answers: ArmAnswers): Promise<readonly Heading[]>;
+  readonly predictor: Predictor;
+  readonly tuner: Tuner;
   state(): Promise<HostState>;
   /** The samples of a log: payloads of the link's Sample, one after the other, ticks from the log's first row. */
   log(file: string): Promise<Uint8Array>;
   /** Raw values by parameter name of a built-in controller or a file. */
   controller(file: string): Promise<Readonly<Record<string, number>>>;
-  /** Predicts what the model does with a whole parameter set in raw values. */
-  predict(raw: readonly number[], board: number): Promise<Prediction>;
   arm(): Promise<ArmDescription>;
 }

@@ -1,6 +1,9 @@
 // The host behind the dashboard's server, over HTTP: every request carries the token, every error is a sentence.
 
-import type { ArmAnswers, ArmDescription, Bench, Files, Heading, Services, HostState, Job, Jobs, Prediction, Verb } from "../session/services";
+import type {
+  ArmAnswers, ArmDescription, Bench, Files, Heading, Services, HostState, Job, Jobs, Model, Prediction, Predictor, Tuner, Verb,
+} from "../session/services";
+import { HostTuner } from "./host_tuner";
 
 type Method = "GET" | "POST" | "PUT" | "DELETE";
 type Listener = { readonly heard: (job: Job) => void; readonly gone: (id: string) => void };
@@ -24,8 +27,6 @@ export class HostServices implements Services {
       if (this.listeners.length === 1) this.hear();
     },
   };
-  private readonly listeners: Listener[] = [];
-
   readonly files: Files = {
     fetch: async (name) => (await this.request("GET", fileAddress(name))).blob(),
     bring: async (name, content, ifThere) => {
@@ -35,6 +36,14 @@ export class HostServices implements Services {
     rename: (name, to) => this.ask<unknown>("POST", "/file", { name, to }).then(() => undefined),
     remove: (name) => this.ask<unknown>("DELETE", fileAddress(name)).then(() => undefined),
   };
+
+  readonly predictor: Predictor = {
+    models: async () => modelsIn(await this.state()),
+    predict: (raw, board, { name }) => this.ask<Prediction>("POST", "/predict", { raw, board, file: name }),
+  };
+
+  readonly tuner: Tuner = new HostTuner(this);
+  private readonly listeners: Listener[] = [];
 
   constructor(private readonly token: string, private readonly page: () => string) {}
 
@@ -58,10 +67,6 @@ export class HostServices implements Services {
   async controller(file: string): Promise<Readonly<Record<string, number>>> {
     const answer = await this.ask<{ raw: Record<string, number> }>("GET", `/controller?file=${encodeURIComponent(file)}`);
     return answer.raw;
-  }
-
-  predict(raw: readonly number[], board: number): Promise<Prediction> {
-    return this.ask("POST", "/predict", { raw, board });
   }
 
   arm(): Promise<ArmDescription> {
@@ -91,6 +96,15 @@ export class HostServices implements Services {
 
 function fileAddress(name: string): string {
   return `/file?name=${encodeURIComponent(name)}`;
+}
+
+/** What was identified comes first, then the dashboard's own arm and what else the folder has. */
+function modelsIn({ files, arm }: HostState): Model[] {
+  const of = (wanted: string): readonly string[] => files.filter(({ kind, name }) => kind === wanted && name !== arm).map(({ name }) => name);
+  return [
+    ...of("model").map((name) => ({ name, identified: true, says: `${name} is the arm as greywhale identify has found it.` })),
+    ...[arm, ...of("arm")].map((name) => ({ name, identified: false, says: `The arm ${name} as it is described; greywhale identify makes a model of the arm itself.` })),
+  ];
 }
 
 function sentenceIn(text: string): string | null {

@@ -1,6 +1,14 @@
 // The data that the tuner gets of greywhale (tools/site/tuner_data.py writes it), and the messages of the page and its worker.
 
-import type { Searched, Tuned } from "../session/services";
+import type { Prediction, Tuned } from "../session/services";
+
+/** The course of a search so far: the best cost of each joint, now and after each batch. */
+export type Found = {
+  readonly best: Controllers;
+  readonly cost: readonly number[];
+  readonly evaluations: number;
+  readonly curve: readonly (readonly [evaluations: number, cost: readonly number[]])[];
+};
 
 /** One joint's settings in raw values, in the order of the parameter table. */
 export type Row = readonly number[];
@@ -82,13 +90,29 @@ export type TunerData = {
   readonly rests: { readonly searching: Rests; readonly refining: Rests; readonly judging: Rests };
   readonly limits: readonly number[]; // in the order of Limits in host/native/web/score.cpp
   readonly search: SearchData;
+  readonly predicted: PredictionData;
+};
+
+/** An arm without noise, and how its leader moves in a prediction. */
+export type PredictionData = {
+  readonly plant: readonly number[];
+  readonly leader_pots: readonly number[];
+  readonly follower_pots: readonly number[];
+  readonly motions: { readonly [motion in keyof Prediction]: Steps };
+  readonly noise: Noise;
+  readonly wait_s: number;
+  readonly every: number; // ticks between two rows
+  readonly pwm_tops: Readonly<Record<string, readonly number[]>>; // of each board, by its number
 };
 
 export type ToTuner =
-  | { kind: "tune"; code: ArrayBuffer; data: TunerData; before: Controllers }
-  | { kind: "stop" };
+  | { kind: "begin"; code: ArrayBuffer; data: TunerData } // first
+  | { kind: "tune"; before: Controllers }
+  | { kind: "stop" }
+  | { kind: "predict"; id: number; raw: readonly number[]; board: number };
 
 export type FromTuner =
-  | { kind: "searched"; searched: Searched }
+  | { kind: "searched"; evaluations: number; budget: number; cost: readonly number[]; curve: Found["curve"] }
   | { kind: "tuned"; tuned: Tuned }
+  | { kind: "predicted"; id: number; prediction: Prediction }
   | { kind: "failed"; sentence: string };

@@ -12,6 +12,9 @@ const SLICES = 4; // of a tick
 /** Every joint's angles (rad) at every so many ticks. */
 export type Trace = { readonly leader: readonly number[][]; readonly follower: readonly number[][] };
 
+/** A board and the potentiometers around it, as the module takes them. */
+type Bench = Pick<TunerData, "settings" | "leader_pots" | "follower_pots"> & { readonly timing: readonly number[]; readonly wait_s: number };
+
 export class TunerModule implements Elementary {
   constructor(private readonly exports: Exports, private readonly data: TunerData) {
     this.call("_initialize");
@@ -43,23 +46,35 @@ export class TunerModule implements Elementary {
 
   /** An experiment with the arm, on the motion of a drill. */
   addDrill(drill: Drill, noise: Noise): number {
-    return this.add(drill.steps, noise, false, [this.data.plant], (ticks) => this.weights(drill, ticks));
+    return this.add(this.bench(false), drill.steps, noise, [this.data.plant], (ticks) => this.weights(drill, ticks));
   }
 
   /** One with variants of the arm, on moves and rests; `late`: every duty acts a period later. */
   addRests({ steps, noise }: Rests, plants: readonly (readonly number[])[], late = false): number {
-    return this.add(steps, noise, late, plants, (ticks) => new Array<number>(ticks).fill(0));
+    return this.add(this.bench(late), steps, noise, plants, unweighted);
+  }
+
+  /** One with an arm without noise, on a board with settings of its own. */
+  addMotion(steps: Steps, settings: readonly number[]): number {
+    const { leader_pots, follower_pots, wait_s, noise, plant } = this.data.predicted;
+    return this.add({ settings, timing: this.data.timing[0], leader_pots, follower_pots, wait_s }, steps, noise, [plant], unweighted);
+  }
+
+  private bench(late: boolean): Bench {
+    const { settings, timing, leader_pots, follower_pots, motion: { wait_s } } = this.data;
+    return { settings, timing: timing[late ? 1 : 0]!, leader_pots, follower_pots, wait_s };
   }
 
   private add(
-    steps: Steps, { seeds, gaps }: Noise, late: boolean, plants: readonly (readonly number[])[], weigh: (ticks: number) => number[],
+    { settings, timing, leader_pots, follower_pots, wait_s }: Bench, steps: Steps, { seeds, gaps }: Noise,
+    plants: readonly (readonly number[])[], weigh: (ticks: number) => number[],
   ): number {
-    const { settings, timing, leader_pots, follower_pots, motion: { scale, apart, wait_s } } = this.data;
+    const { scale, apart } = this.data.motion;
     const joints = steps.map((one) => unpacked(one, scale));
     const wait = Math.round(wait_s / TICK_S);
     const ticks = wait + Math.ceil(((joints[0]!.length - 1) * apart) / SLICES);
     return this.tell("add", [
-      ...settings, ...timing[late ? 1 : 0]!, ...leader_pots, seeds[0], ...follower_pots, seeds[1], ...gaps,
+      ...settings, ...timing, ...leader_pots, seeds[0], ...follower_pots, seeds[1], ...gaps,
       wait * SLICES, apart, plants.length, ...plants.flat(), ticks, ...weigh(ticks),
       ...joints[0]!.flatMap((_, row) => joints.map((angles) => angles[row]!)),
     ]);
@@ -95,6 +110,10 @@ export class TunerModule implements Elementary {
     const all = inRows(this.found(2 * count));
     return { leader: all.slice(0, count / JOINTS), follower: all.slice(count / JOINTS) };
   }
+}
+
+function unweighted(ticks: number): number[] {
+  return new Array<number>(ticks).fill(0);
 }
 
 function unpacked(steps: readonly number[], scale: number): number[] {

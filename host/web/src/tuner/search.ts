@@ -1,17 +1,10 @@
 // The search of `greywhale tune` (greywhale/tune/default.py and search/lockstep.py): four optimisers in lockstep, in stages.
 
-import type { Controllers, Row, SearchData, Stage } from "./data";
+import type { Controllers, Found, Row, SearchData, Stage } from "./data";
 import { ALL } from "./module";
 import { Random } from "./random";
 import { rint, Space } from "./space";
 import { clip, latinHypercube, WolfWhale, type Elementary } from "./wolf_whale";
-
-export type Found = {
-  readonly best: Controllers;
-  readonly cost: readonly number[];
-  readonly evaluations: number;
-  readonly curve: readonly (readonly [evaluations: number, cost: readonly number[]])[];
-};
 
 export class Search implements Found {
   best: Row[];

@@ -1,13 +1,16 @@
 // A tuning from its start to what a person sees of it: search, the last look, and both controllers behind the same hand.
 
 import type { Tuned } from "../session/services";
-import type { Controllers, Row, TunerData } from "./data";
+import type { Controllers, Found, Row, TunerData } from "./data";
 import { Judge } from "./judge";
 import type { TunerModule } from "./module";
-import { Search, type Found } from "./search";
+import { Search } from "./search";
 import { rint, Space } from "./space";
 
 const SHOWN_TICKS = 10; // between two points of a picture
+
+/** A joint that was not steady enough as it was found: it has less voltage or integral, or what it had before. */
+type Calmed = { readonly joint: number; readonly as_before: boolean };
 
 export class Tuning {
   private readonly judge: Judge;
@@ -52,16 +55,26 @@ export class Tuning {
   }
 
   /** With noise that the search has not heard. */
-  private shown(after: Controllers, calmed: Tuned["calmed"]): Tuned {
+  private shown(after: Controllers, calmed: readonly Calmed[]): Tuned {
     const drill = this.data.drills[this.data.shown]!;
     const experiment = this.module.addDrill(drill, drill.judging);
     this.module.run(experiment, [this.before, after]);
     const [first, second] = [0, 1].map((row) => this.module.trace(experiment, row, SHOWN_TICKS));
     return {
-      after, calmed,
+      before: this.before, after, notes: inWords(calmed),
       time_s: first!.leader.map((_, place) => (place * SHOWN_TICKS) / 1000),
       leader: first!.leader, followers: [first!.follower, second!.follower],
       mse: this.module.mse(experiment, 2),
     };
   }
+}
+
+function inWords(calmed: readonly Calmed[]): string[] {
+  const named = (as_before: boolean): string =>
+    calmed.filter((one) => one.as_before === as_before).map(({ joint }) => `joint ${joint}`).join(", ");
+  const [kept, calmer] = [named(true), named(false)];
+  return [
+    ...(calmer ? [`Steadier than the search had it, with less voltage or integral: ${calmer}.`] : []),
+    ...(kept ? [`As before, since what was found came to rest less well: ${kept}.`] : []),
+  ];
 }

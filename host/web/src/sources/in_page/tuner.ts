@@ -1,28 +1,35 @@
 // The tuner inside the page: a worker of its own for each tuning.
 
-import type { Searched, Tuned, Tuner } from "../../session/services";
+import type { Model, Searched, Tuned, Tuner } from "../../session/services";
 import type { FromTuner, ToTuner, TunerData } from "../../tuner/data";
 
 export type TunerParts = { readonly code: ArrayBuffer; readonly data: TunerData; readonly worker: Worker };
 
 export class PageTuner implements Tuner {
+  readonly promise = "GWO-WOA tries 500 sets of four controllers, and begins with those that you see. It searches as greywhale "
+    + "tune does, with the same costs on the same motions.";
+  readonly limits = "It tunes greywhale's default arm, at the board's own period and limits; what you broke, loaded or changed on "
+    + "the bench it does not know. Left out are: identification, as the arm's numbers are known here, and so the other arms that a "
+    + "recording would allow; rivals for the last place; the report with its held-out motions; and the least error that a supply "
+    + "allows. greywhale tune tries 2400 sets.";
   private worker: Worker | null = null;
 
   /** `parts` brings what a tuning needs, once one is asked for. */
   constructor(private readonly parts: () => Promise<TunerParts>) {}
 
-  async tune(before: readonly (readonly number[])[], heard: (searched: Searched) => void): Promise<Tuned> {
+  async tune(before: readonly (readonly number[])[], _: Model, heard: (searched: Searched) => void): Promise<Tuned> {
     const { code, data, worker } = await this.parts();
     this.worker = worker;
     try {
       return await new Promise((settle, fail) => {
         worker.addEventListener("message", ({ data: message }: MessageEvent<FromTuner>) => {
-          if (message.kind === "searched") heard(message.searched);
+          if (message.kind === "searched") heard(searched(message));
           else if (message.kind === "tuned") settle(message.tuned);
-          else fail(new Error(message.sentence));
+          else if (message.kind === "failed") fail(new Error(`The tuner has ended: ${message.sentence}`));
         });
         worker.addEventListener("error", ({ message }) => fail(new Error(`The tuner does not start (${message || "its worker is refused"}).`)));
-        this.tell({ kind: "tune", code, data, before });
+        this.tell({ kind: "begin", code, data });
+        this.tell({ kind: "tune", before });
       });
     } finally {
       worker.terminate();
@@ -37,4 +44,13 @@ export class PageTuner implements Tuner {
   private tell(message: ToTuner): void {
     this.worker?.postMessage(message);
   }
+}
+
+function searched({ evaluations, budget, cost, curve }: Extract<FromTuner, { kind: "searched" }>): Searched {
+  const total = cost.reduce((sum, one) => sum + one, 0);
+  return {
+    share: evaluations / budget,
+    words: `${evaluations} of ${budget} sets; the best cost together ${total.toFixed(2)}.`,
+    curve: { unit: "sets", x: curve.map(([at]) => at), y: cost.map((_, joint) => curve.map(([, costs]) => costs[joint]!)) },
+  };
 }

@@ -38,13 +38,8 @@ export function ofRows(rows: readonly (readonly number[])[]): Four {
   return rows.map((row) => Object.fromEntries(SETTING_NAMES.map((name, place) => [name, row[place]!])) as Settings);
 }
 
-export type Difference = { readonly name: string; readonly mine: number; readonly other: number };
-
-/** The places where two controllers differ, in raw values. */
-export function differences(mine: Four, other: Four): Difference[] {
-  return mine.flatMap((settings, joint) =>
-    SETTING_NAMES.filter((name) => settings[name] !== other[joint]![name]).map((name) =>
-      ({ name: parameterName(joint, name), mine: settings[name], other: other[joint]![name] })));
+export function areSame(one: Four, other: Four): boolean {
+  return one.every((settings, joint) => SETTING_NAMES.every((name) => settings[name] === other[joint]![name]));
 }
 
 export class Draft {

@@ -1,32 +1,74 @@
-// Predicts a step and a reach with the edited controllers on the model: anew while a person drags.
+// Predicts a step and a reach with the controllers that run and with the edited ones on a model: anew while a person drags.
 
-import { el, setText } from "../../parts/dom";
+import { el, select, setText, tableHead } from "../../parts/dom";
 import { motionCanvas, paintMotions } from "../../parts/motions";
 import { sentenceOf } from "../../parts/sentence";
-import type { Services, Prediction } from "../../session/services";
+import { themeChanged } from "../../parts/theme";
+import { follows, type Follows } from "../../session/follows";
+import { JOINTS } from "../../session/samples";
+import type { Model, Prediction, Predictor } from "../../session/services";
+import { pairOf } from "./numbers";
+
+/** Whole parameter sets in raw values, and the board that has them. */
+type Wish = { readonly running: readonly number[]; readonly edited: readonly number[]; readonly board: number };
+
+const KINDS = ["step", "reach"] as const;
+const TITLES = { step: "A step of 0.5 rad", reach: "A reach of 1 rad in 0.8 s" } as const;
+const LEGEND = "Dashed: the leader. Thin: what the board runs. Bold: what is edited. Below, what runs → what is edited; errors are "
+  + "root mean squares.";
+const MRAD = 1000; // in a rad
+const MEASURES: readonly (readonly [title: string, of: (one: Follows) => number | null, digits: number, none: string])[] = [
+  ["overshoot, %", ({ overshoot }) => overshoot, 1, "–"],
+  ["settles, s", ({ overshoot, settling }) => (overshoot === null ? null : settling), 2, "never"],
+  ["error in step, mrad", ({ step }) => MRAD * step, 1, ""],
+  ["error in reach, mrad", ({ reach }) => MRAD * reach, 1, ""],
+];
 
 export class PredictPanel {
   readonly element: HTMLElement;
-  private readonly pictures = {
-    step: { canvas: motionCanvas("Predicted step"), words: el("span", { class: "quiet" }) },
-    reach: { canvas: motionCanvas("Predicted reach"), words: el("span", { class: "quiet" }) },
-  };
+  private readonly canvases = { step: motionCanvas("Predicted step"), reach: motionCanvas("Predicted reach") };
   private readonly problem = el("p", { class: "problem", attrs: { role: "status" } });
-  private wanted: { raw: readonly number[]; board: number } | null = null;
+  private readonly says = el("p", { class: "quiet" });
+  private readonly choice = select<string>("Model", [], (name) => this.choose(name));
+  private readonly chosen = el("label", { class: "row", hidden: true }, el("span", { class: "quiet" }, "Model"), this.choice);
+  private readonly rows = Array.from({ length: JOINTS }, (_, joint) =>
+    el("tr", {}, el("th", { attrs: { scope: "row" } }, String(joint)), ...MEASURES.map(() => el("td"))));
+  private models: readonly Model[] = [];
+  private newest: Wish | null = null;
+  private wanted: Wish | null = null;
   private busy = false;
   private joint = 0;
-  private last: Prediction | null = null;
+  private ran: { readonly key: string; readonly prediction: Prediction } | null = null; // so that a drag asks for one alone
+  private found: { readonly running: Prediction; readonly edited: Prediction } | null = null;
 
-  constructor(private readonly services: Services) {
+  constructor(private readonly predictor: Predictor) {
     this.element = el("section", { class: "card predict" }, el("h2", {}, "The model predicts"),
-      ...(["step", "reach"] as const).map((kind) => el("figure", {},
-        el("figcaption", {}, kind === "step" ? "Step " : "Reach ", this.pictures[kind].words), this.pictures[kind].canvas)),
-      this.problem);
+      ...KINDS.map((kind) => el("figure", {}, el("figcaption", {}, TITLES[kind]), this.canvases[kind])),
+      el("p", { class: "quiet" }, LEGEND),
+      el("div", { class: "scroll", attrs: { tabindex: "0", role: "region", "aria-label": "What the model predicts for each joint" } },
+        el("table", {}, tableHead("joint", ...MEASURES.map(([title]) => title)), el("tbody", {}, ...this.rows))),
+      this.chosen, this.says, this.problem);
+    themeChanged.on(() => this.draw());
+  }
+
+  /** The model of now; null before they are read. */
+  get model(): Model | null {
+    return this.models.find(({ name }) => name === this.choice.value) ?? null;
+  }
+
+  /** Reads what there is to predict with. */
+  async readModels(): Promise<void> {
+    const before = this.choice.value;
+    this.models = await this.predictor.models();
+    this.choice.replaceChildren(...this.models.map(({ name }) => el("option", { value: name }, name)));
+    if (this.models.some(({ name }) => name === before)) this.choice.value = before;
+    this.chosen.hidden = this.models.length < 2;
+    this.choose(this.choice.value);
   }
 
   /** Asks for these controllers; while an answer is on its way only the newest wish waits. */
-  want(raw: readonly number[], board: number): void {
-    this.wanted = { raw, board };
+  want(wish: Wish): void {
+    this.newest = this.wanted = wish;
     void this.serve();
   }
 
@@ -35,14 +77,20 @@ export class PredictPanel {
     this.draw();
   }
 
+  private choose(name: string): void {
+    this.choice.value = name;
+    setText(this.says, this.model?.says ?? "");
+    if (this.newest) this.want(this.newest);
+  }
+
   private async serve(): Promise<void> {
     if (this.busy) return;
     this.busy = true;
-    while (this.wanted) {
-      const { raw, board } = this.wanted;
+    for (let model = this.model; this.wanted && model; model = this.model) {
+      const wish = this.wanted;
       this.wanted = null;
       try {
-        this.last = await this.services.predict(raw, board);
+        this.found = await this.predict(wish, model);
         setText(this.problem, "");
       } catch (error) {
         setText(this.problem, sentenceOf(error));
@@ -52,15 +100,27 @@ export class PredictPanel {
     this.busy = false;
   }
 
+  private async predict({ running, edited, board }: Wish, model: Model): Promise<{ running: Prediction; edited: Prediction }> {
+    const key = [model.name, board, ...running].join();
+    if (this.ran?.key !== key) this.ran = { key, prediction: await this.predictor.predict(running, board, model) };
+    const same = running.every((value, index) => value === edited[index]);
+    const { prediction } = this.ran;
+    return { running: prediction, edited: same ? prediction : await this.predictor.predict(edited, board, model) };
+  }
+
   draw(): void {
-    if (!this.last) return;
-    for (const kind of ["step", "reach"] as const) {
-      const { canvas, words } = this.pictures[kind];
-      const { time_s, leader, follower } = this.last[kind];
-      paintMotions(canvas, time_s, [leader, follower], this.joint);
-      const rms = Math.sqrt(this.last[kind].mse[this.joint]!);
-      setText(words, `error rms ${(1000 * rms).toFixed(1)} mrad`);
+    if (!this.found) return;
+    const { running, edited } = this.found;
+    for (const kind of KINDS) {
+      const { time_s, leader, follower } = edited[kind];
+      paintMotions(this.canvases[kind], time_s, [leader, running[kind].follower, follower], this.joint);
     }
-    this.element.dataset["rms"] = String(Math.sqrt(this.last.step.mse[this.joint]!));
+    const [before, after] = [follows(running), follows(edited)];
+    this.rows.forEach((row, joint) => {
+      row.dataset["shown"] = joint === this.joint ? "yes" : "";
+      MEASURES.forEach(([, of, digits, none], place) =>
+        setText(row.cells[place + 1]!, pairOf(of(before[joint]!), of(after[joint]!), digits, none)));
+    });
+    this.element.dataset["rms"] = String(after[this.joint]!.step);
   }
 }
