@@ -26,6 +26,7 @@ import { Session } from "../session/session";
 import { Shell } from "../views/shell";
 import { PageBoard } from "../sources/in_page/board";
 import type { BenchData } from "../sources/in_page/messages";
+import { PagePredictor } from "../sources/in_page/predictor";
 import { PageTuner, type TunerParts } from "../sources/in_page/tuner";
 import { SerialBoard } from "../sources/serial/board";
 
@@ -42,6 +43,10 @@ export type Parts = {
   /** The folder of the documentation, where one lies beside the page. */
   readonly docs: string | null;
 };
+
+const THE_BENCHS = "This is the arm as the page begins with it: what was broken, loaded or changed on the bench is not in it.";
+const NOT_YOURS = "This is greywhale's default arm, not yours. greywhale identify makes a model of your own from a recording, and "
+  + "greywhale dashboard predicts and tunes with that.";
 
 /** Shows the page, or why its parts are not there. */
 export function openPage(parts: Promise<Parts>): void {
@@ -65,13 +70,13 @@ function choice(): HTMLElement {
   return box;
 }
 
-function showPort({ data, worker, calibration, firmware, docs }: Parts): void {
+function showPort({ data, worker, tuner, calibration, firmware, docs }: Parts): void {
   worker.terminate();
   const board = new SerialBoard((navigator as { serial?: Serial }).serial, firmware);
   const session = new Session(board);
   const shell = new Shell(session, [
     new ConnectView(session, board), new LiveView(session), new ArmView(session, { arm: async () => data.description }),
-    new ControllerView(session, null), new ParametersView(session), new CalibrateView(session, calibration),
+    new ControllerView(session, new PagePredictor(tuner, NOT_YOURS), new PageTuner(tuner)), new ParametersView(session), new CalibrateView(session, calibration),
   ], ["Plug the board in by USB and connect it in the view Port."]);
   offerOthers(shell, docs);
 }
@@ -88,7 +93,7 @@ async function showBench({ code, data, worker, tuner, firmware, docs }: Parts): 
   const leaderControl = new LeaderControl(board, session);
   const arm = new ArmView(session, { arm: async () => data.description });
   arm.leadBy(leaderControl);
-  const controller = new ControllerView(session, null, new PageTuner(tuner));
+  const controller = new ControllerView(session, new PagePredictor(tuner, THE_BENCHS), new PageTuner(tuner));
   const benchFirmware = new FirmwareCard(
     session, board, "The board runs the very image that a real Mega gets. Write it anew through its bootloader, or one of your own.",
     (act) => void session.attempt(act),

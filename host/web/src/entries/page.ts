@@ -44,7 +44,7 @@ function addServices(shell: Shell, session: Session, services: Services): void {
     shell.show(verbs);
     void verbs.open(verb, given);
   });
-  for (const view of [arm, new ControllerView(session, services), verbs, files]) {
+  for (const view of [arm, new ControllerView(session, services.predictor, services.tuner, services), verbs, files]) {
     shell.add(view);
   }
   void session.attempt(async () => {
