@@ -21,6 +21,7 @@
 #include "closed_loop/controllers.h"
 #include "closed_loop/experiment.h"
 #include "closed_loop/plant_columns.h"
+#include "closed_loop/plant_row.h"
 #include "closed_loop/swings.h"
 #include "share_out.h"
 
@@ -208,10 +209,7 @@ nb::object shown_angles(const In<float, nb::shape<-1, -1, kJoints>>& angles, con
 
 nb::object plant_row(const arm::ArmParameters& parameters) {
   Array<double> row({loop::kPlantColumns});
-  loop::PlantRow one{};
-  one.plant.body = arm::rigid_body(parameters);
-  for (std::size_t i = 0; i < kJoints; ++i) one.plant.joints[i] = parameters.joints[i];
-  one.supply = parameters.drive.supply;
+  const loop::PlantRow one = loop::plant_row(parameters);
   std::copy_n(reinterpret_cast<const double*>(&one), loop::kPlantColumns, row.data());
   return row.numpy();
 }
