@@ -4,18 +4,20 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import asdict
 from string import Formatter
 from typing import Any
 
-from pydantic import TypeAdapter, ValidationError
+from pydantic import BaseModel, TypeAdapter, ValidationError
 
+from greywhale.arm.parameters import ArmParameters
 from greywhale.base import sentences
 from greywhale.base.formats import toml_file
 from greywhale.base.formats.kinds import Kind
 from greywhale.files.controller import Controller, stored_as
 from greywhale.files.log import check, layout, parameters
+from greywhale.protocol.firmware import JOINTS
 from greywhale.protocol.schema import PARAMETER_BY_NAME
 from tools.generate.current import keep_current
 from tools.generate.names import camel
@@ -28,12 +30,13 @@ import type { FileKind, Schema } from "./schema_types";
 
 """
 # Words of a JSON schema that the page walks by.
-WORDS = ("type", "minimum", "maximum", "minItems", "maxItems", "required", "default")
+WORDS = (*("type", "enum", "minimum", "exclusiveMinimum", "maximum", "minItems", "maxItems", "required", "default"),)
 # A value of each type of JSON schemas, and the word for it.
 TYPES: Mapping[str, Any] = {
     "number": float,
     "integer": int,
     "string": str,
+    "boolean": bool,
     "array": tuple[int, ...],
     "object": dict[str, Any],
 }
@@ -42,7 +45,8 @@ _NOTHING = (None, "", ())
 
 def text() -> str:
     """The whole module."""
-    parts = [_log(), _limits(), _kinds(), _types(), _controller(), "\n".join(_sentences())]
+    schemas = [_schema("CONTROLLER", Controller, _kept), _schema("ARM", ArmParameters, _not_kept)]
+    parts = [_log(), _limits(), _kinds(), _types(), *schemas, "\n".join(_sentences())]
     return HEAD + "\n\n".join(parts) + "\n"
 
 
@@ -97,16 +101,29 @@ def _types() -> str:
 
 def _refusal(kind: Any) -> str:
     try:
-        TypeAdapter(kind).validate_json("true", strict=True)
+        TypeAdapter(kind).validate_json("1" if kind is bool else "true", strict=True)
     except ValidationError as error:
         return toml_file.rule_of(error.errors()[0]["msg"])
-    raise AssertionError(f"a {kind} is no truth value")
+    raise AssertionError(f"a {kind} is of another type")
 
 
-def _controller() -> str:
-    schema = Controller.model_json_schema()
-    plain = _plain(schema, schema["$defs"], "")
-    return f"export const CONTROLLER: Schema = {_laid_out(plain, '')};"
+Kept = Callable[[str], dict[str, Any]]  # the parameter that keeps a number of a file, by the number's key
+
+
+def _schema(name: str, model: type[BaseModel], kept: Kept) -> str:
+    schema = model.model_json_schema()
+    plain = _plain(schema, schema["$defs"], "", kept)
+    return f"export const {name}: Schema = {_laid_out(plain, '')};"
+
+
+def _kept(key: str) -> dict[str, Any]:
+    name, scale = stored_as(key)
+    return {"parameter": name if name in PARAMETER_BY_NAME else f"joint{{}}.{name}", "scale": scale}
+
+
+def _not_kept(key: str) -> dict[str, Any]:
+    """No board stores an arm."""
+    return {}
 
 
 def _laid_out(value: Any, margin: str) -> str:
@@ -117,21 +134,22 @@ def _laid_out(value: Any, margin: str) -> str:
     return f"{{\n{''.join(lines)}{margin}}}"
 
 
-def _plain(here: dict[str, Any], definitions: Mapping[str, Any], key: str) -> dict[str, Any]:
+def _plain(here: dict[str, Any], definitions: Mapping[str, Any], key: str, kept: Kept) -> dict[str, Any]:
     """A schema without references, and with the parameter that keeps each number; `key` is that of the file."""
     (here,) = (one for one in here.get("anyOf", [here]) if one.get("type") != "null")
     if "$ref" in here:
-        return _plain(definitions[here["$ref"].rpartition("/")[2]], definitions, key)
+        return _plain(definitions[here["$ref"].rpartition("/")[2]], definitions, key, kept)
     plain: dict[str, Any] = {word: here[word] for word in WORDS if word in here}
     if here["type"] in ("number", "integer"):
-        name, scale = stored_as(key)
-        plain |= {"parameter": name if name in PARAMETER_BY_NAME else f"joint{{}}.{name}", "scale": scale}
+        plain |= kept(key)
     if "properties" in here:
-        plain["properties"] = {name: _plain(one, definitions, name) for name, one in here["properties"].items()}
+        plain["properties"] = {name: _plain(one, definitions, name, kept) for name, one in here["properties"].items()}
     if "prefixItems" in here:
-        plain["prefixItems"] = [_plain(one, definitions, key) for one in here["prefixItems"]]
+        plain["prefixItems"] = [_plain(one, definitions, key, kept) for one in here["prefixItems"]]
     elif "items" in here:
-        plain["items"] = _plain(here["items"], definitions, key)
+        plain["items"] = _plain(here["items"], definitions, key, kept)
+        plain |= {"minItems": JOINTS, "maxItems": JOINTS}  # a check of its own, where the model does not say so
+        plain.pop("default", None)  # of its tables, each has its own
     return plain
 
 

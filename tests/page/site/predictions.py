@@ -1,13 +1,16 @@
-"""Predictions of the host for the default arm, for a page without a host to repeat, and their measures in a log."""
+"""Predictions of the host for a page to repeat, and their measures as in a log; arms that the host refuses."""
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pytest
 
-from greywhale.dashboard.predict import ROW_EVERY_TICKS, Motion, predict
-from greywhale.files.arm import load_arm
+from greywhale.base.errors import UserError
+from greywhale.dashboard.predict import ROW_EVERY_TICKS, Motion, Prediction, predict
+from greywhale.files.arm import content_of, load_arm
 from greywhale.measure.runs import REST_RAD, REST_S, periods, resting
 from greywhale.measure.step_response import answer, departures
 from greywhale.protocol.firmware import TICK_S
@@ -25,12 +28,41 @@ TABLES = (
 )
 
 
+ARMS = ("worn", "white_box")  # with play and lag; by the paper's equation of a motor
+SLIPS = (
+    ("motor_equation = ", "motor_equation = 3 #"),
+    ('motor_equation = "physical"', 'motor_equation = "physics"'),
+    ("supply = ", "supply = 0 #"),
+    ("supply = ", "supplies = "),
+    ("mass = ", "mass = 1e-12 #"),
+    ("[[joint]]", "[[joint]]\nfixed = 1"),
+    ("[[joint]]", "[[join]]"),
+    ("gear_ratio = ", "gear_ratio = -"),
+    ("direction = ", "direction = 2"),
+)
+
+
 def predictions() -> list[dict[str, Any]]:
-    arm, cases = load_arm("default"), []
-    for table in TABLES:
-        told = predict(arm, table)
-        asked = {"raw": list(table.raw), "board": int(table.board)}
-        cases.append({**asked, "prediction": told, "answers": [_answer(told["step"], joint) for joint in range(4)]})
+    default = load_arm("default")
+    cases = [_case(predict(default, table), table, "") for table in TABLES]
+    return cases + [_case(predict(load_arm(name), USUAL), USUAL, content_of(name).decode()) for name in ARMS]
+
+
+def _case(told: Prediction, table: ParameterTable, arm: str) -> dict[str, Any]:
+    asked = {"arm": arm, "raw": list(table.raw), "board": int(table.board)}
+    return {**asked, "prediction": told, "answers": [_answer(told["step"], joint) for joint in range(4)]}
+
+
+def spoilt_arms() -> list[dict[str, str]]:
+    """Texts that are no arms, with the host's sentence."""
+    sound, path, cases = content_of("worn").decode(), Path("arm.toml"), []
+    for slip, made in SLIPS:
+        text = sound.replace(slip, made, 1)
+        assert text != sound, slip
+        path.write_text(text, "utf-8")
+        with pytest.raises(UserError) as refused:
+            load_arm(path)
+        cases.append({"text": text, "error": refused.value.message})
     return cases
 
 

@@ -24,7 +24,7 @@ from greywhale.protocol.joints import ALL
 from greywhale.protocol.schema import LAYOUT, PARAMETER_BY_NAME, PARAMETERS, Refusal
 from greywhale.protocol.table import ParameterTable
 from tests.page.site.calibrations import calibrations
-from tests.page.site.predictions import predictions
+from tests.page.site.predictions import predictions, spoilt_arms
 from tests.page.site.tuning import tuning
 from tools import ROOT
 from tools.setup.page import node
@@ -184,7 +184,7 @@ def test_link_client_samples_law_files_bench_and_tuner_give_what_python_gives(
     tuned = tmp_path / "tuning.json"
     tuned.write_text(json.dumps(tuning()))
     predicted = tmp_path / "predictions.json"
-    predicted.write_text(json.dumps(predictions()))
+    predicted.write_text(json.dumps({"cases": predictions(), "spoilt": spoilt_arms()}))
     given = {"CALIBRATIONS": calibrated, "GOLDEN": golden, "LAW": law, "CONTROLLER_FILES": files, "TUNING": tuned}
     given |= {
         "BOTH": ROOT / "tests/files/both",

@@ -16,6 +16,7 @@ from greywhale.board.flash.images import read_image
 from greywhale.board.pots import POTS
 from greywhale.board.upload import read_parameters
 from greywhale.files import controller, parameter_file
+from greywhale.files.arm import content_of
 from greywhale.files.log import read_log
 from greywhale.files.paper_tables import paper_table
 from greywhale.protocol.table import ParameterTable
@@ -78,6 +79,24 @@ def live(page: Page, bench: LockStepBench, seconds: float) -> None:
         page.wait_for_timeout(20)
 
 
+def require_a_prediction_for_an_arm_of_ones_own(page: Page, folder: Path) -> None:
+    """Before there is one it is the default arm's, and says so."""
+    press(page, "Controller")
+    expect(page.get_by_text("This is greywhale's default arm, not yours.")).to_be_visible()
+    predicted = page.locator(".predict[data-rms]")
+    others = predicted.get_attribute("data-rms")
+    arm, wrong = folder / "arm.toml", folder / "wrong_arm.toml"
+    arm.write_bytes(content_of("worn"))
+    wrong.write_bytes(content_of("worn").replace(b"gravity = ", b"gravitas = "))
+    page.get_by_label("An arm.toml or model.toml of yours").set_input_files(wrong)
+    expect(page.get_by_text("wrong_arm.toml: unknown key gravitas; perhaps gravity is meant.")).to_be_visible()
+    page.get_by_label("An arm.toml or model.toml of yours").set_input_files(arm)
+    expect(page.get_by_text("arm.toml is the arm as it is described there.")).to_be_visible()
+    expect(page.locator(f".predict[data-rms]:not([data-rms='{others}'])")).to_be_visible()
+    press(page, "Tune")
+    expect(page.get_by_text("This page tunes for the default arm alone")).to_be_visible()
+
+
 def test_a_board_is_watched_driven_and_changed(context: BrowserContext, site: Site, tmp_path: Path) -> None:
     with lock_step() as bench, connected(context, site, bench) as (page, cable):
         pill = page.locator(".pill")
@@ -123,6 +142,8 @@ def test_a_board_is_watched_driven_and_changed(context: BrowserContext, site: Si
         expect(page.get_by_text("The changes run; Store keeps them.")).to_be_visible()
         press(page, "Store")
         expect(page.get_by_text("What runs is stored.")).to_be_visible()
+        require_a_prediction_for_an_arm_of_ones_own(page, tmp_path)
+        press(page, "Parameters")
         page.get_by_label("Upload a controller.toml").set_input_files(wrong)
         with pytest.raises(UserError) as refused:
             controller.load(wrong)

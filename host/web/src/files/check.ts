@@ -20,6 +20,7 @@ const IS: Readonly<Record<string, (value: Toml) => boolean>> = {
   number: isNumber,
   integer: (value) => typeof value === "bigint",
   string: (value) => typeof value === "string",
+  boolean: (value) => typeof value === "boolean",
   array: Array.isArray,
   object: isTable,
 };
@@ -33,7 +34,10 @@ function wrong(path: Path, value: Toml, rule: string): Problem[] {
 }
 
 function problemsOf(value: Toml, schema: Schema, path: Path): Problem[] {
-  const { type } = schema;
+  const { type, enum: known } = schema;
+  if (known && !known.some((one) => String(one) === String(value))) {
+    return wrong(path, value, `it should be ${known.map((one) => (typeof one === "string" ? `'${one}'` : one)).join(" or ")}`);
+  }
   if (!IS[type]!(value)) {
     const rule = rules.TYPE_RULES[type as keyof typeof rules.TYPE_RULES];
     if (!Array.isArray(value) && !isTable(value)) return wrong(path, value, rule);
@@ -44,14 +48,14 @@ function problemsOf(value: Toml, schema: Schema, path: Path): Problem[] {
   return isTable(value) ? problemsOfTable(value, schema, path) : [];
 }
 
-function outside(value: number | bigint, { minimum, maximum }: Schema): boolean {
-  return value < (minimum ?? -Infinity) || value > (maximum ?? Infinity);
+function outside(value: number | bigint, { minimum, exclusiveMinimum, maximum }: Schema): boolean {
+  return value < (minimum ?? -Infinity) || value <= (exclusiveMinimum ?? -Infinity) || value > (maximum ?? Infinity);
 }
 
 /** All bounds of a number, whichever it misses. */
 function boundsOf(schema: Schema): string {
   const told = Object.entries(rules.BOUND_WORDS).flatMap(([bound, words]) => {
-    const at = schema[bound as "minimum" | "maximum"];
+    const at = schema[bound as "minimum" | "exclusiveMinimum" | "maximum"];
     return at === undefined ? [] : [`${words} ${short(at)}`];
   });
   return rules.within({ bounds: told.join(" and ") });

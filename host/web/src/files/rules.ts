@@ -20,7 +20,7 @@ export const KINDS = {
   answers: {"words": "a file of answers", "taker": "greywhale arm new --answers", "inside_ends": ["_mm", "_g", "_deg", "_rpm", "_ma", "_a", "_ncm", "_nm", "_ohm", "_gcm2", "_v"], "top": ["supply_v"]},
 } as const satisfies Readonly<Record<string, FileKind>>;
 
-export const TYPE_RULES = {"number": "it should be a valid number", "integer": "it should be a valid integer", "string": "it should be a valid string", "array": "it should be a valid array", "object": "it should be an object"};
+export const TYPE_RULES = {"number": "it should be a valid number", "integer": "it should be a valid integer", "string": "it should be a valid string", "boolean": "it should be a valid boolean", "array": "it should be a valid array", "object": "it should be an object"};
 
 export const CONTROLLER: Schema = {
   "type": "object",
@@ -71,6 +71,154 @@ export const CONTROLLER: Schema = {
       },
     },
     "tuning": {"type": "object"},
+  },
+};
+
+export const ARM: Schema = {
+  "type": "object",
+  "required": ["name", "link", "joint", "drive"],
+  "properties": {
+    "name": {"type": "string"},
+    "source": {"type": "string", "default": ""},
+    "gravity": {"type": "number", "minimum": 0, "maximum": 100, "default": 9.81},
+    "motor_equation": {"type": "string", "enum": ["physical", "paper"], "default": "physical"},
+    "link": {
+      "type": "array",
+      "items": {
+        "type": "object",
+        "required": ["mass", "length", "centre", "inertia"],
+        "properties": {
+          "mass": {"type": "number", "minimum": 1e-09, "maximum": 10000.0},
+          "length": {"type": "number", "minimum": 0.0001, "maximum": 100},
+          "centre": {"type": "number", "minimum": 0, "maximum": 100},
+          "inertia": {
+            "type": "object",
+            "required": ["xx", "yy", "zz"],
+            "properties": {
+              "xx": {"type": "number", "minimum": 1e-18, "maximum": 100000000.0},
+              "yy": {"type": "number", "minimum": 1e-18, "maximum": 100000000.0},
+              "zz": {"type": "number", "minimum": 1e-18, "maximum": 100000000.0},
+            },
+          },
+        },
+      },
+      "minItems": 4,
+      "maxItems": 4,
+    },
+    "tip": {
+      "type": "object",
+      "properties": {
+        "mass": {"type": "number", "minimum": 0, "maximum": 10000.0, "default": 0.0},
+      },
+    },
+    "joint": {
+      "type": "array",
+      "items": {
+        "type": "object",
+        "required": ["motor", "stops"],
+        "properties": {
+          "name": {"type": "string", "default": ""},
+          "fixed": {"type": "boolean", "default": false},
+          "motor": {
+            "type": "object",
+            "required": ["inertia", "resistance", "torque_constant", "viscous", "gear_ratio"],
+            "properties": {
+              "inertia": {"type": "number", "minimum": 1e-18, "maximum": 100000000.0},
+              "resistance": {"type": "number", "minimum": 1e-18, "maximum": 1000000000000.0},
+              "torque_constant": {"type": "number", "minimum": 1e-18, "maximum": 1000000.0},
+              "viscous": {"type": "number", "minimum": 0, "maximum": 1000000000000.0},
+              "gear_ratio": {"type": "number", "minimum": 0.001, "maximum": 1000000.0},
+            },
+          },
+          "friction": {
+            "type": "object",
+            "properties": {
+              "coulomb": {"type": "number", "minimum": 0, "maximum": 1000000.0, "default": 0.0},
+              "breakaway": {"type": "number", "minimum": 0, "maximum": 1000000.0, "default": 0.0},
+              "stribeck_velocity": {"type": "number", "minimum": 1e-09, "maximum": 1000.0, "default": 0.1},
+              "load": {"type": "number", "minimum": 0, "maximum": 0.9, "default": 0.0},
+              "creep_velocity": {"type": "number", "minimum": 0, "maximum": 1, "default": 0.0},
+            },
+          },
+          "gear": {
+            "type": "object",
+            "properties": {
+              "half_gap": {"type": "number", "minimum": 0, "maximum": 0.5, "default": 0.0},
+              "stiffness": {"type": "number", "minimum": 0, "maximum": 1000000000.0, "default": 0.0},
+              "damping": {"type": "number", "minimum": 0, "maximum": 1000000000000.0, "default": 0.0},
+              "drag": {"type": "number", "minimum": 0, "maximum": 1000000000000.0, "default": 0.0},
+            },
+          },
+          "stops": {
+            "type": "object",
+            "required": ["min", "max"],
+            "properties": {
+              "min": {"type": "number", "minimum": -6.283185307179586, "maximum": 6.283185307179586},
+              "max": {"type": "number", "minimum": -6.283185307179586, "maximum": 6.283185307179586},
+            },
+          },
+        },
+      },
+      "minItems": 4,
+      "maxItems": 4,
+    },
+    "drive": {
+      "type": "object",
+      "required": ["supply"],
+      "properties": {
+        "supply": {"type": "number", "exclusiveMinimum": 0, "maximum": 60},
+        "supply_resistance": {"type": "number", "minimum": 0, "maximum": 10, "default": 0.0},
+        "resistance": {"type": "number", "minimum": 0, "maximum": 10, "default": 0.0},
+        "pwm_levels": {"type": "integer", "minimum": 0, "maximum": 65535, "default": 0},
+      },
+    },
+    "leader_pots": {
+      "type": "object",
+      "properties": {
+        "supply": {"type": "number", "minimum": 0.1, "maximum": 60, "default": 5.0},
+        "joint": {
+          "type": "array",
+          "items": {
+            "type": "object",
+            "properties": {
+              "track": {"type": "number", "exclusiveMinimum": 0, "maximum": 62.83185307179586, "default": 5.235987755982989},
+              "centre": {"type": "number", "minimum": -62.83185307179586, "maximum": 62.83185307179586, "default": 0.0},
+              "direction": {"type": "integer", "enum": [1, -1], "default": 1},
+              "noise": {"type": "number", "minimum": 0, "maximum": 0.5, "default": 0.0},
+              "linearity": {"type": "number", "minimum": 0, "maximum": 0.05, "default": 0.0},
+              "play": {"type": "number", "minimum": 0, "maximum": 0.2, "default": 0.0},
+              "lag": {"type": "number", "minimum": 0, "maximum": 0.05, "default": 0.0},
+            },
+          },
+          "minItems": 4,
+          "maxItems": 4,
+        },
+      },
+    },
+    "follower_pots": {
+      "type": "object",
+      "properties": {
+        "supply": {"type": "number", "minimum": 0.1, "maximum": 60, "default": 5.0},
+        "joint": {
+          "type": "array",
+          "items": {
+            "type": "object",
+            "properties": {
+              "track": {"type": "number", "exclusiveMinimum": 0, "maximum": 62.83185307179586, "default": 5.235987755982989},
+              "centre": {"type": "number", "minimum": -62.83185307179586, "maximum": 62.83185307179586, "default": 0.0},
+              "direction": {"type": "integer", "enum": [1, -1], "default": 1},
+              "noise": {"type": "number", "minimum": 0, "maximum": 0.5, "default": 0.0},
+              "linearity": {"type": "number", "minimum": 0, "maximum": 0.05, "default": 0.0},
+              "play": {"type": "number", "minimum": 0, "maximum": 0.2, "default": 0.0},
+              "lag": {"type": "number", "minimum": 0, "maximum": 0.05, "default": 0.0},
+            },
+          },
+          "minItems": 4,
+          "maxItems": 4,
+        },
+      },
+    },
+    "identification": {"type": "object"},
   },
 };
 

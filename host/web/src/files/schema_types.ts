@@ -3,7 +3,9 @@
 /** A JSON Schema as far as the host's have it. */
 export type Schema = {
   readonly type: string;
+  readonly enum?: readonly (string | number)[]; // the values there are
   readonly minimum?: number;
+  readonly exclusiveMinimum?: number;
   readonly maximum?: number;
   readonly minItems?: number; // the largest number too
   readonly maxItems?: number;
@@ -11,7 +13,7 @@ export type Schema = {
   readonly items?: Schema;
   readonly properties?: Readonly<Record<string, Schema>>; // any, if it has none
   readonly required?: readonly string[];
-  readonly default?: string | number;
+  readonly default?: string | number | boolean;
   readonly parameter?: string; // that keeps a number: "joint{}.kp", of each joint
   readonly scale?: number; // so many units of the parameter are one of the file's
 };

@@ -1,5 +1,6 @@
 // The services of a host beside the board: files, predictions, verbs, a bench. Without one views hide what needs it.
 
+import type { NamedText } from "../parts/named_text";
 import type { Telling } from "./telling";
 
 export type NamedFile = { readonly name: string; readonly kind: string; readonly size_bytes: number; /** since 1970 */ readonly changed_s: number };
@@ -59,6 +60,8 @@ export type Model = { readonly name: string; readonly identified: boolean; reado
 export interface Predictor {
   /** The arms there are; the first is the one to begin with. */
   models(): Promise<readonly Model[]>;
+  /** Reads an arm.toml or model.toml of a person, where the source takes one. */
+  readonly read?: (file: NamedText) => Model;
   /** Predicts a whole parameter set in raw values, on a board by its number. */
   predict(raw: readonly number[], board: number, model: Model): Promise<Prediction>;
 }

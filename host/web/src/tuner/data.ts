@@ -1,5 +1,6 @@
 // The data that the tuner gets of greywhale (tools/site/tuner_data.py writes it), and the messages of the page and its worker.
 
+import type { ArmNumbers } from "../files/arm_file";
 import type { Prediction, Tuned } from "../session/services";
 
 /** The course of a search so far: the best cost of each joint, now and after each batch. */
@@ -109,7 +110,7 @@ export type ToTuner =
   | { kind: "begin"; code: ArrayBuffer; data: TunerData } // first
   | { kind: "tune"; before: Controllers }
   | { kind: "stop" }
-  | { kind: "predict"; id: number; raw: readonly number[]; board: number };
+  | { kind: "predict"; id: number; raw: readonly number[]; board: number; arm: ArmNumbers | null }; // null: the default one
 
 export type FromTuner =
   | { kind: "searched"; evaluations: number; budget: number; cost: readonly number[]; curve: Found["curve"] }

@@ -1,7 +1,7 @@
 // The closed loop of many candidates as WebAssembly (host/native/web/exports.cpp), on the arm of the data.
 
 import { startCode, type Exports } from "../parts/web_assembly";
-import type { Controllers, Drill, Noise, Rests, Steps, TunerData } from "./data";
+import type { Controllers, Drill, Noise, PredictionData, Rests, Steps, TunerData } from "./data";
 import type { Elementary } from "./wolf_whale";
 
 export const JOINTS = 4;
@@ -14,6 +14,9 @@ export type Trace = { readonly leader: readonly number[][]; readonly follower: r
 
 /** A board and the potentiometers around it, as the module takes them. */
 type Bench = Pick<TunerData, "settings" | "leader_pots" | "follower_pots"> & { readonly timing: readonly number[]; readonly wait_s: number };
+
+/** An arm whose potentiometers have no noise. */
+export type Quiet = Pick<PredictionData, "plant" | "leader_pots" | "follower_pots">;
 
 export class TunerModule implements Elementary {
   constructor(private readonly exports: Exports, private readonly data: TunerData) {
@@ -54,9 +57,15 @@ export class TunerModule implements Elementary {
     return this.add(this.bench(late), steps, noise, plants, unweighted);
   }
 
-  /** One with an arm without noise, on a board with settings of its own. */
-  addMotion(steps: Steps, settings: readonly number[]): number {
-    const { leader_pots, follower_pots, wait_s, noise, plant } = this.data.predicted;
+  /** The row by which an arm is simulated, of the numbers that describe it. */
+  plantOf(arm: readonly number[]): number[] {
+    this.tell("plant", arm);
+    return [...this.found(this.data.plant.length)];
+  }
+
+  /** An experiment with an arm without noise, on a board with settings of its own. */
+  addMotion(steps: Steps, settings: readonly number[], { plant, leader_pots, follower_pots }: Quiet): number {
+    const { wait_s, noise } = this.data.predicted;
     return this.add({ settings, timing: this.data.timing[0], leader_pots, follower_pots, wait_s }, steps, noise, [plant], unweighted);
   }
 

@@ -1,5 +1,6 @@
 // The closed loop with controllers that nobody has uploaded yet: a step and a reach, as the host predicts them.
 
+import type { ArmNumbers } from "../files/arm_file";
 import { TABLE } from "../link/schema";
 import type { Predicted, Prediction } from "../session/services";
 import type { PredictionData, Row } from "./data";
@@ -9,27 +10,32 @@ import { SETTING_NAMES } from "../session/law";
 const BEYOND_RAD = 10; // stands for a motion that leaves the range of numbers
 const UNKNOWN_BOARD = "1"; // counts as a Mega
 
+type Experiments = { readonly [motion in keyof Prediction]: number };
+
 export class Foresight {
-  private readonly experiments = new Map<string, { readonly [motion in keyof Prediction]: number }>(); // by settings
+  private readonly experiments = new Map<string, Experiments>(); // by settings and arm
 
   constructor(private readonly module: TunerModule, private readonly data: PredictionData) {}
 
-  /** The follower under a whole parameter set, wired and calibrated rightly. */
-  predict(raw: readonly number[], board: number): Prediction {
+  /** The follower under a whole parameter set, wired and calibrated rightly; without an arm the default one. */
+  predict(raw: readonly number[], board: number, arm: ArmNumbers | null): Prediction {
     const settings = settingsOf(raw, this.data.pwm_tops[board] ?? this.data.pwm_tops[UNKNOWN_BOARD]!);
-    const { step, reach } = this.experimentsWith(settings);
+    const { step, reach } = this.experimentsWith(settings, arm);
     const controllers = ALL.map((joint) => SETTING_NAMES.map((name) => raw[TABLE.named(`joint${joint}.${name}`).index]!));
     return { step: this.follow(step, controllers), reach: this.follow(reach, controllers) };
   }
 
   /** A person drags controllers, and settings seldom change: so the module keeps few experiments. */
-  private experimentsWith(settings: readonly number[]): { readonly [motion in keyof Prediction]: number } {
-    const key = settings.join();
-    const { step, reach } = this.data.motions;
-    const found = this.experiments.get(key)
-      ?? { step: this.module.addMotion(step, settings), reach: this.module.addMotion(reach, settings) };
-    this.experiments.set(key, found);
-    return found;
+  private experimentsWith(settings: readonly number[], arm: ArmNumbers | null): Experiments {
+    const key = JSON.stringify([settings, arm]);
+    const found = this.experiments.get(key);
+    if (found) return found;
+    const { module, data } = this;
+    const quiet = arm ? { ...arm, plant: module.plantOf(arm.arm) } : data;
+    const { step, reach } = data.motions;
+    const added = { step: module.addMotion(step, settings, quiet), reach: module.addMotion(reach, settings, quiet) };
+    this.experiments.set(key, added);
+    return added;
   }
 
   private follow(experiment: number, controllers: readonly Row[]): Predicted {

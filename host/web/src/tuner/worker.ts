@@ -36,7 +36,8 @@ async function hear(message: ToTuner): Promise<void> {
   const ready = await core!;
   if (message.kind === "tune") await tune(ready, message.before);
   if (message.kind === "predict") {
-    page.postMessage({ kind: "predicted", id: message.id, prediction: ready.foresight.predict(message.raw, message.board) });
+    const { id, raw, board, arm } = message;
+    page.postMessage({ kind: "predicted", id, prediction: ready.foresight.predict(raw, board, arm) });
   }
 }
 

@@ -3,12 +3,15 @@
 import type { Model, Searched, Tuned, Tuner } from "../../session/services";
 import type { FromTuner, ToTuner, TunerData } from "../../tuner/data";
 
+/** The name of the arm that a page without a host has. */
+export const DEFAULT_ARM = "default arm";
+
 export type TunerParts = { readonly code: ArrayBuffer; readonly data: TunerData; readonly worker: Worker };
 
 export class PageTuner implements Tuner {
-  readonly promise = "GWO-WOA tries 500 sets of four controllers, and begins with those that you see. It searches as greywhale "
-    + "tune does, with the same costs on the same motions.";
-  readonly limits = "It tunes greywhale's default arm, at the board's own period and limits; what you broke, loaded or changed on "
+  readonly promise = "GWO-WOA tries 500 sets of four controllers for greywhale's default arm, and begins with those that you see. It "
+    + "searches as greywhale tune does, with the same costs on the same motions.";
+  readonly limits = "It tunes at the board's usual period and limits; what you broke, loaded or changed on "
     + "the bench it does not know. Left out are: identification, as the arm's numbers are known here, and so the other arms that a "
     + "recording would allow; rivals for the last place; the report with its held-out motions; and the least error that a supply "
     + "allows. greywhale tune tries 2400 sets.";
@@ -17,7 +20,10 @@ export class PageTuner implements Tuner {
   /** `parts` brings what a tuning needs, once one is asked for. */
   constructor(private readonly parts: () => Promise<TunerParts>) {}
 
-  async tune(before: readonly (readonly number[])[], _: Model, heard: (searched: Searched) => void): Promise<Tuned> {
+  async tune(before: readonly (readonly number[])[], { name }: Model, heard: (searched: Searched) => void): Promise<Tuned> {
+    if (name !== DEFAULT_ARM) {
+      throw new Error(`This page tunes for the ${DEFAULT_ARM} alone: choose that as the model, or run greywhale tune ${name} on a computer.`);
+    }
     const { code, data, worker } = await this.parts();
     this.worker = worker;
     try {

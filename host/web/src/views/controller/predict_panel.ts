@@ -1,7 +1,8 @@
 // Predicts a step and a reach with the controllers that run and with the edited ones on a model: anew while a person drags.
 
-import { el, select, setText, tableHead } from "../../parts/dom";
+import { el, fileField, select, setText, tableHead } from "../../parts/dom";
 import { motionCanvas, paintMotions } from "../../parts/motions";
+import type { NamedText } from "../../parts/named_text";
 import { sentenceOf } from "../../parts/sentence";
 import { themeChanged } from "../../parts/theme";
 import { follows, type Follows } from "../../session/follows";
@@ -47,7 +48,7 @@ export class PredictPanel {
       el("p", { class: "quiet" }, LEGEND),
       el("div", { class: "scroll", attrs: { tabindex: "0", role: "region", "aria-label": "What the model predicts for each joint" } },
         el("table", {}, tableHead("joint", ...MEASURES.map(([title]) => title)), el("tbody", {}, ...this.rows))),
-      this.chosen, this.says, this.problem);
+      this.chosen, this.says, ...(predictor.read ? [this.fileField(predictor.read)] : []), this.problem);
     themeChanged.on(() => this.draw());
   }
 
@@ -64,6 +65,15 @@ export class PredictPanel {
     if (this.models.some(({ name }) => name === before)) this.choice.value = before;
     this.chosen.hidden = this.models.length < 2;
     this.choose(this.choice.value);
+  }
+
+  private fileField(read: (file: NamedText) => Model): HTMLElement {
+    return fileField("An arm.toml or model.toml of yours", ".toml", (file) => void file?.then(async (text) => {
+      const { name } = read(text);
+      await this.readModels();
+      this.choose(name);
+      setText(this.problem, "");
+    }).catch((error: unknown) => setText(this.problem, sentenceOf(error))));
   }
 
   /** Asks for these controllers; while an answer is on its way only the newest wish waits. */
