@@ -45,8 +45,7 @@ export type Parts = {
 };
 
 const THE_BENCHS = "This is the arm as the page begins with it: what was broken, loaded or changed on the bench is not in it.";
-const NOT_YOURS = "This is greywhale's default arm, not yours. greywhale identify makes a model of your own from a recording, and "
-  + "greywhale dashboard predicts and tunes with that.";
+const NOT_YOURS = "This is greywhale's default arm, not yours. greywhale identify makes a model.toml of your own from a recording: give it here.";
 
 /** Shows the page, or why its parts are not there. */
 export function openPage(parts: Promise<Parts>): void {
@@ -76,7 +75,7 @@ function showPort({ data, worker, tuner, calibration, firmware, docs }: Parts): 
   const session = new Session(board);
   const shell = new Shell(session, [
     new ConnectView(session, board), new LiveView(session), new ArmView(session, { arm: async () => data.description }),
-    new ControllerView(session, new PagePredictor(tuner, NOT_YOURS), new PageTuner(tuner)), new ParametersView(session), new CalibrateView(session, calibration),
+    new ControllerView(session, new PagePredictor(tuner, NOT_YOURS, true), new PageTuner(tuner)), new ParametersView(session), new CalibrateView(session, calibration),
   ], ["Plug the board in by USB and connect it in the view Port."]);
   offerOthers(shell, docs);
 }
