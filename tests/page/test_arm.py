@@ -29,7 +29,7 @@ def test_the_arm_is_drawn_where_the_board_says_and_leads_by_a_link_that_is_dragg
     page.get_by_role("button", name="Controller").click()
     assert not any(name.startswith("scene") for name in asked)
     page.get_by_role("button", name="Arm", exact=True).click()
-    expect(page.get_by_text("default arm: solid is the follower")).to_be_visible()
+    expect(page.get_by_text("Default arm: solid is the follower")).to_be_visible()
     expect(page.get_by_text("Drag a link to lead")).to_be_visible()
     canvas = page.get_by_role("img", name="The arm")
     look_from(page, stage, "Side")
@@ -38,11 +38,11 @@ def test_the_arm_is_drawn_where_the_board_says_and_leads_by_a_link_that_is_dragg
     look_from(page, stage, "Top")
     place = canvas.bounding_box()
     assert place is not None
-    # From above, the base stands left of the middle, and the hand reaches beyond it to the right.
+    # From above, the base stands in the middle, and the hand reaches to the right of it, a little below.
     x, y = place["x"] + place["width"] / 2, place["y"] + place["height"] / 2
     before = stage.newest().leader
-    page.mouse.move(x + 60, y)
+    page.mouse.move(x + 0.28 * place["height"], y + 0.065 * place["height"])
     page.mouse.down()
-    page.mouse.move(x + 160, y + 100, steps=4)
+    page.mouse.move(x + 0.28 * place["height"] + 60, y + 120, steps=4)
     page.mouse.up()
     stage.wait_for(lambda: any(abs(now - then) > 1000 for now, then in zip(stage.newest().leader, before, strict=True)))

@@ -60,7 +60,7 @@ def test_a_slow_graphics_processor_holds_up_the_picture_and_not_the_page_that_dr
         await_state(page, "following")
         page.get_by_role("button", name="Arm", exact=True).click()
         canvas = page.get_by_role("img", name="The arm", include_hidden=True)
-        page.wait_for_function("() => document.querySelector('.stage canvas').width > 300")  # so all of it is made
+        page.wait_for_function("() => document.querySelector('.stage canvas').width === 64")
         begun = stage.newest().tick
         stage.wait_for(lambda: stage.newest().tick > begun + 1000)
         await_state(page, "following")

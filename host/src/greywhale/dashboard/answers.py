@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from typing import Any, TypedDict, TypeGuard
 
 from greywhale import __version__
-from greywhale.arm.export import JOINT_IDS, urdf
 from greywhale.arm.parameters import ArmParameters
 from greywhale.base.errors import BadUsage, cut
 from greywhale.base.formats import toml_file
@@ -47,7 +46,6 @@ class State(TypedDict):
 
 
 class JointFacts(TypedDict):
-    id: str  # of the URDF
     min: float  # rad, of the stops
     max: float
     fixed: bool
@@ -55,7 +53,7 @@ class JointFacts(TypedDict):
 
 class ArmFacts(TypedDict):
     name: str
-    urdf: str
+    lengths: list[float]  # m, of the links from the base to the tip
     joints: list[JointFacts]
 
 
@@ -72,10 +70,9 @@ def _is_whole(value: object) -> TypeGuard[int]:
 
 def arm_facts(arm: ArmParameters) -> ArmFacts:
     joints: list[JointFacts] = [
-        {"id": name, "min": joint.stops.min, "max": joint.stops.max, "fixed": joint.fixed}
-        for name, joint in zip(JOINT_IDS, arm.joint, strict=True)
+        {"min": joint.stops.min, "max": joint.stops.max, "fixed": joint.fixed} for joint in arm.joint
     ]
-    return {"name": arm.name, "urdf": urdf(arm), "joints": joints}
+    return {"name": arm.name, "lengths": [link.length for link in arm.link], "joints": joints}
 
 
 @dataclass

@@ -46,10 +46,15 @@ function detailText({ code, detail }: Nack): string {
 /** The fault of a status in words, with where it is and the remedy. */
 export function faultSentence(status: Pick<StatusReply, "fault" | "fault_where">): string {
   const fault = Fault.of(status.fault);
-  const where = status.fault_where;
-  const pots = [Fault.is.pot_low, Fault.is.pot_high, Fault.is.leader_jump].some((one) => one === status.fault);
-  const place = where === 0xff ? "" : ` (${pots ? potName(where) : `joint ${where}`})`;
-  return `${upperFirst(fault.description)}${place}. ${fault.remedy}`;
+  const place = faultPlace(status);
+  return `${upperFirst(fault.description)}${place ? ` (${place.words})` : ""}. ${fault.remedy}`;
+}
+
+/** The joint at which a fault sits, and its part there in words; null for a fault of the whole board. */
+export function faultPlace({ fault, fault_where: where }: Pick<StatusReply, "fault" | "fault_where">): { joint: number; words: string } | null {
+  if (where === 0xff) return null;
+  const pots = [Fault.is.pot_low, Fault.is.pot_high, Fault.is.leader_jump].some((one) => one === fault);
+  return { joint: where % 4, words: pots ? potName(where) : `joint ${where}` };
 }
 
 /** 0..3 are the leader's potentiometers, 4..7 the follower's. */

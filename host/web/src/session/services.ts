@@ -68,8 +68,9 @@ export interface Predictor {
 
 export type ArmDescription = {
   readonly name: string;
-  readonly urdf: string;
-  readonly joints: readonly { readonly id: string; readonly min: number; readonly max: number; readonly fixed: boolean }[];
+  /** Of the links from the base to the tip, m. */
+  readonly lengths: readonly number[];
+  readonly joints: readonly { readonly min: number; readonly max: number; readonly fixed: boolean }[];
 };
 
 export type Range = { readonly minimum: number; readonly maximum: number; readonly value: number; readonly step?: number };

@@ -1,45 +1,54 @@
-// The arm in three dimensions from its URDF: follower solid, leader a ghost, stops as arcs, voltage as rings.
+// The arm in three dimensions: follower solid, leader a ghost, stops as arcs, voltage as rings, a fault in red.
 
 import {
-  AmbientLight, BufferGeometry, Color, DirectionalLight, GridHelper, Group, Line, LineBasicMaterial, Mesh,
-  MeshBasicMaterial, MeshStandardMaterial, PerspectiveCamera, Quaternion, Raycaster, Scene, TorusGeometry, Vector2,
-  Vector3, WebGLRenderer,
+  DirectionalLight, HemisphereLight, Mesh, MeshLambertMaterial, PerspectiveCamera, Raycaster, Scene, Vector2, Vector3, WebGLRenderer,
   type Object3D,
 } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
-import URDFLoader, { type URDFRobot } from "urdf-loader";
 import type { LeaderControl } from "../bench/leader_control";
 import type { ArmDescription } from "../../session/services";
 import type { Colours } from "../../parts/theme";
+import { Floor } from "./floor";
+import { Gauges } from "./gauges";
 import { finished, pause } from "./graphics";
+import { Ghost } from "./leader";
+import { ArmModel, makeParts } from "./model";
+import { cameraPlace, extentOf, type Extent, type Point } from "./reach";
 
-const AT_STOP_RAD = 0.03;
-const RING_RADIUS = 0.034;
-const ARC_RADIUS = 0.05;
-const ARC_POINTS = 48;
 const DRAG_RAD = 0.008; // a pixel
 const ACROSS = new Set([0, 3]); // joints that turn by a drag to the side; the others by one up or down
-const FIELD_DEG = 42;
-const WIDE = 1.3; // a narrower picture shows as much to the sides, and more above and below
-const SOLID = "#a9b8c4"; // told apart from light and dark ground alike
-const CENTRE = new Vector3(0.09, 0, 0.11);
+export const FIELD = (30 * Math.PI) / 180;
+const FIRST_PIXELS = 64; // a side, of the picture with which the graphics processor learns what to draw
+const RATIOS = [2, 1.4, 1, 0.75]; // pixels a pixel of the page: less where a picture takes long
+const SLOW_MS = 60; // of a picture
+const SLOW_PICTURES = 3; // one after the other, until there are fewer pixels
 
-export const PRESETS = { corner: [0.5, -0.5, 0.42], front: [0.8, 0, 0.16], side: [0.09, -0.7, 0.16], top: [0.09, -0.01, 0.85] } as const;
+/** Where from the middle of all that the arm reaches one looks at it. */
+export const PRESETS: Readonly<Record<"corner" | "front" | "side" | "top", Point>> = {
+  corner: [0.6, -0.75, 0.36], front: [1, 0, 0.12], side: [0, -1, 0.1], top: [0, -0.012, 1],
+};
 export type Preset = keyof typeof PRESETS;
 
 export type Pose = {
   readonly leader: readonly number[]; // rad
   readonly follower: readonly number[];
   readonly voltage: readonly number[]; // as a share of the supply
+  readonly faulty: number | null; // the joint of a fault
 };
 
 export class ArmScene {
   private readonly scene = new Scene();
-  private readonly camera = new PerspectiveCamera(FIELD_DEG, 1, 0.01, 10);
+  private readonly camera = new PerspectiveCamera((FIELD * 180) / Math.PI, 1, 0.05, 40);
   private readonly controls: OrbitControls;
-  private readonly rings: Mesh<TorusGeometry, MeshBasicMaterial>[] = [];
-  private readonly arcs: Line<BufferGeometry, LineBasicMaterial>[] = [];
-  private readonly grid = new GridHelper(0.8, 16);
+  private readonly follower: ArmModel;
+  private readonly ghost: Ghost;
+  private readonly floor: Floor;
+  private readonly gauges: Gauges;
+  private readonly extent: Extent;
+  private preset: Preset | null = "corner"; // null once a person has turned it
+  private ratio = 0; // place in RATIOS
+  private slow = 0; // pictures
+  private size: readonly [width: number, height: number] = [FIRST_PIXELS, FIRST_PIXELS];
   private shades: Colours | null = null;
   private moved = true;
   private last = "";
@@ -55,61 +64,43 @@ export class ArmScene {
     const renderer = new WebGLRenderer({ canvas, context });
     renderer.debug.checkShaderErrors = false; // to ask is to wait
     await pause();
-    const follower = robot(arm);
-    await pause();
-    const ghost = robot(arm);
-    await pause();
-    return new ArmScene(renderer, arm, follower, ghost);
+    return new ArmScene(renderer, arm);
   }
 
-  private constructor(
-    private readonly renderer: WebGLRenderer, private readonly arm: ArmDescription,
-    private readonly follower: URDFRobot, private readonly ghost: URDFRobot,
-  ) {
+  private constructor(private readonly renderer: WebGLRenderer, private readonly arm: ArmDescription) {
+    this.extent = extentOf(arm);
+    const parts = makeParts(arm, this.extent.floor);
+    const solid = new MeshLambertMaterial({ vertexColors: true });
+    this.follower = new ArmModel(arm, parts, () => [solid]);
+    this.gauges = new Gauges(this.follower, arm, parts.radii);
+    this.ghost = new Ghost(arm, parts);
+    this.floor = new Floor(arm, parts, this.extent.floor);
+    const sun = new DirectionalLight(0xffffff, 2);
+    sun.position.set(0.5, -0.9, 1.3);
+    const sky = new HemisphereLight(0xffffff, 0x8c9aa4, 1.5);
+    sky.position.set(0, 0, 1);
+    this.scene.add(sky, sun, this.floor.group, new Mesh(parts.stand, solid), this.follower.root, this.ghost.model.root);
     this.camera.up.set(0, 0, 1);
     this.controls = new OrbitControls(this.camera, renderer.domElement);
-    this.controls.target.copy(CENTRE);
     this.controls.addEventListener("change", () => { this.moved = true; });
-    this.grid.rotation.x = Math.PI / 2;
-    const sun = new DirectionalLight(0xffffff, 2.2);
-    sun.position.set(0.6, -0.8, 1.4);
-    this.scene.add(new AmbientLight(0xffffff, 1.1), sun, this.grid, this.follower, this.ghost);
-    this.arm.joints.forEach(({ id, min, max }) => this.mark(id, min, max));
+    this.controls.addEventListener("start", () => { this.preset = null; });
     this.look("corner");
   }
 
   /**
    * Lets the graphics processor compile and draw all once, which takes one made of software seconds. Who shows the canvas
-   * before waits for it, and so does the page.
+   * before waits for it, and so does the page. This first picture is small.
    */
   async warm(): Promise<void> {
     const context = this.renderer.getContext() as WebGL2RenderingContext;
+    this.renderer.setPixelRatio(1);
+    this.renderer.setSize(FIRST_PIXELS, FIRST_PIXELS, false);
+    this.ghost.show([1, 1, 1, 1], [0, 0, 0, 0]); // so that it is compiled as well
     await this.renderer.compileAsync(this.scene, this.camera);
     await finished(context);
     this.renderer.render(this.scene, this.camera);
     await finished(context);
-  }
-
-  /** A ring about a joint for its voltage, and an arc in the link before for where its stops are. */
-  private mark(id: string, min: number, max: number): void {
-    const joint = this.follower.joints[id]!;
-    const turn = new Quaternion().setFromUnitVectors(new Vector3(0, 0, 1), joint.axis);
-    const ring = new Mesh(new TorusGeometry(RING_RADIUS, 0.004, 10, 40), new MeshBasicMaterial());
-    ring.quaternion.copy(turn);
-    joint.add(ring);
-    this.rings.push(ring);
-    const points = Array.from({ length: ARC_POINTS + 1 }, (_, i) => {
-      const angle = min + ((max - min) * i) / ARC_POINTS;
-      return new Vector3(ARC_RADIUS * Math.cos(angle), ARC_RADIUS * Math.sin(angle), 0);
-    });
-    const arc = new Line(new BufferGeometry().setFromPoints(points), new LineBasicMaterial());
-    const still = new Group();
-    still.position.copy(joint.position);
-    still.quaternion.copy(joint.quaternion);
-    arc.quaternion.copy(turn);
-    still.add(arc);
-    joint.parent?.add(still);
-    this.arcs.push(arc);
+    this.fit();
   }
 
   /** True if the browser has taken the graphics away. */
@@ -117,39 +108,44 @@ export class ArmScene {
     return this.renderer.getContext().isContextLost();
   }
 
-  paint(shades: Colours): void {
+  paint(shades: Colours, dark: boolean): void {
     this.shades = shades;
-    const solid = new MeshStandardMaterial({ color: SOLID, roughness: 0.6, metalness: 0.1 });
-    const pale = new MeshStandardMaterial({
-      color: shades.accent, transparent: true, opacity: 0.26, depthWrite: false, roughness: 1,
-      polygonOffset: true, polygonOffsetFactor: 4, polygonOffsetUnits: 4, // behind the follower where both are alike
-    });
-    paintLinks(this.follower, solid, this.rings);
-    paintLinks(this.ghost, pale, []);
-    for (const arc of this.arcs) arc.material.color.set(shades.line);
-    const lines = this.grid.material as LineBasicMaterial;
-    lines.vertexColors = false;
-    lines.color.set(shades.line);
-    lines.needsUpdate = true;
+    this.ghost.paint(shades.accent);
+    this.floor.paint(shades, dark);
     this.moved = true;
   }
 
+  /** Looks from there, as far away as all is seen that the arm reaches. */
   look(preset: Preset): void {
-    const [x, y, z] = PRESETS[preset];
-    this.camera.position.set(x, y, z);
-    this.controls.target.copy(CENTRE);
+    this.controls.target.set(...this.extent.middle);
+    this.camera.position.set(...cameraPlace(this.extent, PRESETS[preset], FIELD, this.camera.aspect));
     this.controls.update();
+    this.preset = preset;
     this.moved = true;
   }
 
   resize(width: number, height: number): void {
-    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+    this.size = [width, height];
+    this.fit();
+  }
+
+  private fit(): void {
+    const [width, height] = this.size;
+    this.renderer.setPixelRatio(Math.min(devicePixelRatio, RATIOS[this.ratio]!));
     this.renderer.setSize(width, height, false);
     this.camera.aspect = width / height;
-    const stretch = Math.max(1, WIDE / this.camera.aspect);
-    this.camera.fov = (360 / Math.PI) * Math.atan(stretch * Math.tan((FIELD_DEG * Math.PI) / 360));
     this.camera.updateProjectionMatrix();
-    this.moved = true;
+    if (this.preset) this.look(this.preset);
+    this.renderer.render(this.scene, this.camera); // a canvas of another size is empty
+  }
+
+  /** Hears how long a picture took; where they take long, the next ones have fewer pixels. */
+  took(ms: number): void {
+    this.slow = ms > SLOW_MS ? this.slow + 1 : 0;
+    if (this.slow < SLOW_PICTURES || this.ratio === RATIOS.length - 1) return;
+    this.slow = 0;
+    this.ratio++;
+    this.fit();
   }
 
   /** Lets a person drag the links of both arms; where none is hit, the view turns. */
@@ -183,59 +179,42 @@ export class ArmScene {
     const at = new Vector2(((event.clientX - left) / width) * 2 - 1, 1 - ((event.clientY - top) / height) * 2);
     const ray = new Raycaster();
     ray.setFromCamera(at, this.camera);
-    const [hit] = ray.intersectObjects([this.follower, this.ghost], true).filter(({ object }) => object instanceof Mesh);
+    const links = [this.follower, this.ghost.model].flatMap((model) => model.links.map(([link]) => link!));
+    const [hit] = ray.intersectObjects(links.filter(({ visible }) => visible), false);
+    const frames = [this.follower.frames, this.ghost.model.frames];
     for (let part: Object3D | null = hit?.object ?? null; part; part = part.parent) {
-      const joint = this.arm.joints.findIndex(({ id }) => part === this.follower.joints[id] || part === this.ghost.joints[id]);
+      const joint = this.arm.joints.findIndex((_, place) => frames.some((one) => one[place] === part));
       if (joint >= 0 && !this.arm.joints[joint]!.fixed) return joint;
     }
     return null;
   }
 
-  /** Draws a pose, unless it looks as the last one did. */
-  draw(pose: Pose): void {
-    const key = [...pose.leader, ...pose.follower, ...pose.voltage].map((value) => value.toFixed(3)).join();
-    if (!this.moved && key === this.last) return;
+  /** Where a joint of the follower is in the picture, as shares from its left and its top. */
+  placeOf(joint: number): readonly [x: number, y: number] {
+    const { x, y } = this.follower.frames[joint]!.getWorldPosition(new Vector3()).project(this.camera);
+    return [(x + 1) / 2, (1 - y) / 2];
+  }
+
+  /** Draws a pose, unless it looks as the last one did; whether it did. */
+  draw(pose: Pose): boolean {
+    const key = [...pose.leader, ...pose.follower, ...pose.voltage].map((value) => value.toFixed(3)).join() + pose.faulty;
+    if (!this.shades || (!this.moved && key === this.last)) return false;
     this.last = key;
     this.moved = false;
-    this.arm.joints.forEach(({ id, min, max, fixed }, joint) => {
-      if (fixed) return;
-      const angle = pose.follower[joint]!;
-      this.follower.setJointValue(id, angle);
-      this.ghost.setJointValue(id, pose.leader[joint]!);
-      const atStop = angle < min + AT_STOP_RAD || angle > max - AT_STOP_RAD;
-      this.showVoltage(joint, pose.voltage[joint]!, atStop);
-    });
+    this.follower.pose(pose.follower);
+    this.floor.pose(pose.follower);
+    this.ghost.show(pose.leader, pose.follower);
+    this.gauges.show(this.shades, pose.follower, pose.voltage, pose.faulty);
     this.renderer.render(this.scene, this.camera);
+    return true;
   }
-
-  private showVoltage(joint: number, share: number, atStop: boolean): void {
-    if (!this.shades) return;
-    const { material, scale } = this.rings[joint]!;
-    material.color.set(this.shades.line).lerp(new Color(this.shades.joints[joint]), Math.min(1, 0.25 + Math.abs(share)));
-    scale.setScalar(1 + 0.35 * Math.min(1, Math.abs(share)));
-    this.arcs[joint]!.material.color.set(atStop ? "#d12f3e" : this.shades.quiet);
-  }
-}
-
-function paintLinks(robot: Object3D, material: MeshStandardMaterial, others: readonly Object3D[]): void {
-  robot.traverse((part) => {
-    if (part instanceof Mesh && !others.includes(part)) part.material = material;
-  });
 }
 
 /** The renderer of a canvas, null where the browser lacks or forbids it. */
 function contextOf(canvas: HTMLCanvasElement): WebGL2RenderingContext | null {
   try {
-    return canvas.getContext("webgl2", { antialias: true, alpha: true });
+    return canvas.getContext("webgl2", { antialias: true, alpha: true, stencil: true });
   } catch {
     return null;
   }
-}
-
-function robot(arm: ArmDescription): URDFRobot {
-  const loader = new URDFLoader();
-  loader.parseCollision = false;
-  const made = loader.parse(arm.urdf);
-  for (const joint of Object.values(made.joints)) joint.ignoreLimits = true;
-  return made;
 }
