@@ -4,6 +4,7 @@
 
 import "../page.css";
 import { fragmentOf, stateOf, type PageState } from "./link_to_state";
+import { ArmPicture } from "../views/arm3d/picture";
 import { ArmView } from "../views/arm3d/view";
 import { LeaderControl } from "../views/bench/leader_control";
 import { BenchView } from "../views/bench/view";
@@ -74,7 +75,7 @@ function showPort({ data, worker, tuner, calibration, firmware, docs }: Parts): 
   const board = new SerialBoard((navigator as { serial?: Serial }).serial, firmware);
   const session = new Session(board);
   const shell = new Shell(session, [
-    new ConnectView(session, board), new LiveView(session), new ArmView(session, { arm: async () => data.description }),
+    new ConnectView(session, board), new LiveView(session), new ArmView(new ArmPicture(session, { arm: async () => data.description })),
     new ControllerView(session, new PagePredictor(tuner, NOT_YOURS, true), new PageTuner(tuner)), new ParametersView(session), new CalibrateView(session, calibration),
   ], ["Plug the board in by USB and connect it in the view Port."]);
   offerOthers(shell, docs);
@@ -90,7 +91,7 @@ async function showBench({ code, data, worker, tuner, firmware, docs }: Parts): 
   const board = new PageBoard(worker, code, data, firmware, browserStore);
   const session = new Session(board);
   const leaderControl = new LeaderControl(board, session);
-  const arm = new ArmView(session, { arm: async () => data.description });
+  const arm = new ArmPicture(session, { arm: async () => data.description });
   arm.leadBy(leaderControl);
   const controller = new ControllerView(session, new PagePredictor(tuner, THE_BENCHS), new PageTuner(tuner));
   const benchFirmware = new FirmwareCard(
@@ -102,7 +103,7 @@ async function showBench({ code, data, worker, tuner, firmware, docs }: Parts): 
     document.getElementById("view")!.focus(); // the button is gone
   });
   const views = [
-    beside(arm, cards), new LiveView(session), controller, new ParametersView(session), new BenchView(session, board, leaderControl, null, benchFirmware),
+    beside(new ArmView(arm), cards), new LiveView(session), controller, new ParametersView(session), new BenchView(session, board, leaderControl, null, benchFirmware),
   ];
   let state: PageState | null = null;
   let problem = "";

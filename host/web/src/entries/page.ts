@@ -1,6 +1,7 @@
 // The page's entry: gets the server's token, opens the board, and shows the views.
 
 import "../page.css";
+import { ArmPicture } from "../views/arm3d/picture";
 import { ArmView } from "../views/arm3d/view";
 import { LeaderControl } from "../views/bench/leader_control";
 import { BenchView } from "../views/bench/view";
@@ -38,13 +39,13 @@ function begin({ token, sentence }: Access): void {
 /** Adds what needs a host beside the board. */
 function addServices(shell: Shell, session: Session, services: Services): void {
   document.body.append(new Countdown(session, services.jobs).element);
-  const arm = new ArmView(session, services);
+  const arm = new ArmPicture(session, services);
   const verbs = new DoView(session, services);
   const files = new FilesView(session, services, (verb, given) => {
     shell.show(verbs);
     void verbs.open(verb, given);
   });
-  for (const view of [arm, new ControllerView(session, services.predictor, services.tuner, services), verbs, files]) {
+  for (const view of [new ArmView(arm), new ControllerView(session, services.predictor, services.tuner, services), verbs, files]) {
     shell.add(view);
   }
   void session.attempt(async () => {
