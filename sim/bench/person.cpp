@@ -55,6 +55,7 @@ void Person::take_up(Motion motion) {
   rest_ = {home_, home_};
   further_.clear();
   if (hold) set_out(bring_back_);
+  else if (on_ > 0) begin_anew();
 }
 
 void Person::lead(const Four& angles) {
@@ -117,6 +118,12 @@ void Person::learn(Motion motion) {
   piece_.clear();
   piece_first_ = 0;
   home_ = row(0);
+}
+
+// Goes from where the leader arm is to the first pose, and plays from there.
+void Person::begin_anew() {
+  taken_at_ = angles_;
+  on_ = 1;
 }
 
 void Person::begin_work() {

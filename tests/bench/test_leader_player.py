@@ -128,6 +128,21 @@ def test_leads_live_as_quickly_as_a_hand_and_never_jumps_when_the_motors_go_on_o
     np.testing.assert_allclose(at[-1], THERE, atol=1e-3)
 
 
+def test_another_motion_at_work_begins_where_the_leader_is(player: LeaderPlayer, motion: Trajectory) -> None:
+    advance(player, START + 0.5, enabled=True)
+    for before in (lambda: None, lambda: player.lead(THERE)):  # from a motion, and from a live hand
+        before()
+        advance(player, 0.5, enabled=True)
+        player.take_up(motion)
+        at = [player.angles]
+        for _ in range(round((START + motion.duration_s) / SLICE) + 2):
+            player.step(True, FALLEN)
+            at.append(player.angles)
+        assert np.abs(np.diff(at, axis=0)).max() / SLICE <= FASTEST_RAD_S
+        assert any(np.array_equal(angles, motion.angles[0]) for angles in at)
+        np.testing.assert_array_equal(player.angles, motion.angles[-1])
+
+
 def test_a_motion_or_a_place_ends_a_live_hand(player: LeaderPlayer, motion: Trajectory) -> None:
     first = motion.angles[0]
     for how, arguments in (("take_up", [motion]), ("bring", [first, first, 0.5])):

@@ -254,13 +254,17 @@ def test_the_emergency_stop_closes_its_pin_to_ground_until_it_is_released(server
     assert board.events == ["hold B4 low", "let B4 go"]
 
 
-def test_the_person_takes_up_another_motion_between_two_enables(server: Server, board: Any, tmp_path: Path) -> None:
+def test_the_person_takes_up_another_motion_at_work_and_between_two_enables(
+    server: Server, board: Any, tmp_path: Path
+) -> None:
     file = tmp_path / "another motion.csv"
     save_leader(file, Trajectory(np.array([0.0, 2.0]), np.array([[0.5] * 4, [1.0] * 4])))
     board.pins = np.ones(17)
     server.turn()
-    with pytest.raises(UserError, match="motors are off"):
-        commands.run(server, f"leader '{file}'")
+    assert commands.run(server, "leader steps")["duration_s"] == 16.0
+    assert commands.run(server, f"leader '{file}'") == {"leader": str(file), "duration_s": 2.0}
+    server.bench.run(10.0)
+    assert commands.run(server, "status")["leader"] == [1.0] * 4
     board.pins = np.zeros(17)
     assert commands.run(server, f"leader '{file}'") == {"leader": str(file), "duration_s": 2.0}
     server.bench.run(2.0)

@@ -16,13 +16,14 @@ from greywhale.arm.parameters import PotentiometerBank
 from greywhale.base.types import Floats
 from greywhale.board.flash.images import read_pieces
 from greywhale.dashboard.answers import arm_facts
-from greywhale.loop import human_reaches
+from greywhale.files.trajectory import Trajectory
 from greywhale_sim import commands, faults
+from greywhale_sim.motions import MOTIONS
 from greywhale_sim.wiring import MEGA, Pin, Wiring
 
 Call = list[str | float]
 
-REACHES_HZ = 25  # a hand takes corners smoothly
+MOTION_HZ = 25  # a hand takes corners smoothly
 BEGINS_RAD = 0.02
 MOST_TIMES = 10.0  # of the arm's own noise and play
 
@@ -98,20 +99,21 @@ def bench_data(arm: ArmParameters, wiring: Wiring = MEGA) -> dict[str, Any]:
         "play": {"minimum": 0.0, "maximum": MOST_TIMES, "value": 1.0},
         "faults": [
             {
-                "name": one.name,
-                "description": one.says,
+                **faults.facts(one),
                 "places": {place: fault_calls(one.name, place) for place in faults.WHERE[one.on]},
             }
             for one in faults.FAULTS
         ],
-        "reaches": {"hz": REACHES_HZ, "rows": reaches().tolist()},
+        "motions": [
+            {"name": name, "title": motion.title, "hz": MOTION_HZ, "rows": rows_of(motion.make()).tolist()}
+            for name, motion in MOTIONS.items()
+        ],
     }
 
 
-def reaches() -> Floats:
+def rows_of(motion: Trajectory) -> Floats:
     """Poses of a person's motion (rows, 4) in rad, from when it begins to move."""
-    motion = human_reaches()
-    rows = np.round(motion.at(np.arange(0.0, motion.duration_s, 1.0 / REACHES_HZ)), 4)
+    rows = np.round(motion.at(np.arange(0.0, motion.duration_s, 1.0 / MOTION_HZ)), 4)
     moved = np.abs(rows - rows[0]).max(axis=1) > BEGINS_RAD
     begun: Floats = rows[int(np.argmax(moved)) :]
     return begun

@@ -10,9 +10,10 @@ const VIEWS = ["Arm", "Live", "Controller"];
 const CONTROLS: BenchControls = {
   leader: { minimum: [-2, -2, -2, -2], maximum: [2, 2, 2, 2] },
   faults: [
-    { name: "pot-open", places: ["leader0", "follower1"], description: "" },
-    { name: "brown-out", places: [], description: "" },
+    { name: "pot-open", group: "", title: "", places: ["leader0", "follower1"], description: "" },
+    { name: "brown-out", group: "", title: "", places: [], description: "" },
   ],
+  motions: [{ name: "reaches", title: "" }, { name: "steps", title: "" }],
   noise: { minimum: 0, maximum: 10, value: 1 },
   load: { minimum: 0, maximum: 2, value: 0 },
 };
@@ -24,7 +25,7 @@ test("a state comes back from its fragment, every parameter to the count", () =>
   for (const share of [0, 0.37, 1]) {
     const state: PageState = {
       view: "Controller", joint: 2, sizes: [{ load: 0.25 }, { noise: 3 }],
-      acts: [{ leader: [0, 0.7, -0.3, 0] }, { fault: "pot-open:follower1" }, { fault: "brown-out" }],
+      acts: [{ leader: [0, 0.7, -0.3, 0] }, { motion: "steps" }, { fault: "pot-open:follower1" }, { fault: "brown-out" }],
       raw: TABLE.parameters.map(({ minimum, maximum }) => Math.round(minimum + share * (maximum - minimum)) + 0),
     };
     assert.deepEqual(read(fragmentOf(state)), state);
@@ -41,6 +42,7 @@ test("whatever is wrong in a fragment is named, with what would be right", () =>
     ["play=2", 'play is "2": the page knows no such word'], // this bench has none
     ["view=Live", 'view is "Live": choose arm, live, controller'],
     ["joint=4", 'joint is "4": choose 0, 1, 2, 3'],
+    ["motion=log.csv", 'motion is "log.csv": choose reaches, steps'],
     ["leader=0,0,0", 'leader is "0,0,0": give four angles in rad'],
     ["leader=0,0,0,3", "choose a number from -2 to 2"],
     ["fault=pot-open", "choose one of those in the view Bench"],

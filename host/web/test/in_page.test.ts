@@ -5,7 +5,7 @@ import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
 import { encodeFrame, FrameDecoder } from "../src/link/frames";
-import { EnableRequest, Fault, HelloReply, Sample, TelemetryRequest } from "../src/link/schema";
+import { EnableRequest, Fault, HelloReply, Sample, State, TelemetryRequest } from "../src/link/schema";
 import type { BenchData } from "../src/sources/in_page/messages";
 import { Clock } from "../src/sources/in_page/clock";
 import { Store } from "../src/parts/storage";
@@ -39,7 +39,7 @@ async function rig() {
     life.send(encodeFrame(EnableRequest.type, 1, EnableRequest.pack({ lease_ms: 300 })));
   };
   life.start();
-  return { life, module, pass, start, hellos: () => hellos };
+  return { life, module, pass, samples, start, hellos: () => hellos };
 }
 
 test("a clock owes what passed, at any speed, and gives up what is more than a second", () => {
@@ -59,14 +59,19 @@ test("a clock owes what passed, at any speed, and gives up what is more than a s
   assert.equal(clock.due(20_000, 1), 0);
 });
 
-test("a hand leads, holds, and reaches on; other motions and mistakes are refused", async () => {
-  const { life, pass, start } = await rig();
+test("a hand leads, holds, and takes up other motions from where it is; unknown ones and mistakes are refused", async () => {
+  const { life, pass, samples, start } = await rig();
   start();
   life.change({ leader: [0.5, 0.4, -0.3, 0.2] });
   const { leader } = pass(2000);
   [0.5, 0.4, -0.3, 0.2].forEach((angle, joint) => assert.ok(Math.abs(leader[joint]! - angle * 4096) < 60));
-  life.change({ motion: "reaches" });
-  pass(700);
+  for (const motion of ["reaches", "steps"]) {
+    const from = samples.length;
+    life.change({ motion });
+    assert.equal(pass(1500).state, State.is.following);
+    const moved = samples.slice(from).map(({ leader: now }, at) => Math.abs(now[0]! - samples[from + at - 1]!.leader[0]!) / 4096);
+    assert.ok(Math.max(...moved) < 0.01, "no jump"); // rad in a tick: a hand's speed, and noise
+  }
   life.change({ motion: "hold" });
   const held = pass(1000);
   assert.ok(pass(1000).leader.every((angle, joint) => Math.abs(angle - held.leader[joint]!) < 60));

@@ -12,14 +12,13 @@ import numpy as np
 from greywhale import arm
 from greywhale.base.errors import UserError
 from greywhale.files.leader import load_leader
-from greywhale.loop import human_reaches
 from greywhale_sim import faults, person_commands
 from greywhale_sim.bench import CLOCK_HZ
 from greywhale_sim.faults import POTS
+from greywhale_sim.motions import MOTIONS
 from greywhale_sim.server import Server
 
 CommandAnswer = dict[str, Any]
-REACHES = "reaches"
 QUIT = "quit"  # obeyed by whoever reads the commands
 FARTHEST_RAD = 6.28  # a turn, of an angle in a command
 MOST_SUPPLY_V = 30.0  # of the motors
@@ -74,10 +73,8 @@ def status(server: Server) -> CommandAnswer:
 
 
 def leader(server: Server, file: str) -> CommandAnswer:
-    """Another motion for the person: a file's, or generated `reaches`."""
-    if server.bench.motors_enabled:
-        raise UserError("the person takes up another motion only while the motors are off; stop them first.")
-    motion = human_reaches() if file == REACHES else load_leader(file)
+    """Another motion for the person, at once: a file's, or a generated one by its name."""
+    motion = MOTIONS[file].make() if file in MOTIONS else load_leader(file)
     server.bench.leader.take_up(motion)
     return {"leader": file, "duration_s": motion.duration_s}
 
@@ -208,9 +205,9 @@ def controls(server: Server) -> CommandAnswer:
     found: CommandAnswer = {
         "leader": {"minimum": low, "maximum": high},
         "faults": [
-            {"name": one.name, "places": [place for place in faults.WHERE[one.on] if place], "description": one.says}
-            for one in faults.FAULTS
+            {**faults.facts(one), "places": [place for place in faults.WHERE[one.on] if place]} for one in faults.FAULTS
         ],
+        "motions": [{"name": name, "title": motion.title} for name, motion in MOTIONS.items()],
         "supply": {"minimum": 0.0, "maximum": MOST_SUPPLY_V, "value": bench.supply_v},
         "speed": {"minimum": SLOWEST_SPEED, "maximum": 1.0, "value": server.rate},
         "power": server.board.powered,
@@ -222,7 +219,7 @@ def controls(server: Server) -> CommandAnswer:
 
 COMMANDS: dict[str, tuple[Callable[..., CommandAnswer], str]] = {
     "status": (status, ""),
-    "leader": (leader, f"FILE.csv|{REACHES}"),
+    "leader": (leader, f"FILE.csv|{'|'.join(MOTIONS)}"),
     "lead": (lead, "A0 A1 A2 A3"),
     "hand": (hand, "leader|follower|both A0 A1 A2 A3 [SECONDS]"),
     "turn": (person_commands.turn, "leader|follower 0..3 [SECONDS]"),

@@ -17,6 +17,7 @@ from greywhale_sim.bench import Bench
 
 POTS = tuple(f"{side}{joint}" for side in ("leader", "follower") for joint in range(JOINTS))
 WHERE = {"pot": POTS, "motor": tuple(map(str, range(JOINTS))), "arm": ("",)}
+GROUPS = {"pot": "Potentiometers", "motor": "Motors", "arm": "Plugs and power"}
 USUAL = {"pot": "follower1", "motor": "1", "arm": ""}
 WEAK_GAIN = 0.2  # of a healthy motor's torque
 OTHER_SUPPLY_V = 24.0  # of a power supply taken by mistake
@@ -37,6 +38,7 @@ class Fault:
 
     name: str
     on: Literal["pot", "motor", "arm"]
+    title: str  # as people say it
     says: str
     verb: Literal["calibrate", "doctor"]
     words: str
@@ -86,95 +88,121 @@ def _at_every_joint(*calls: Callable[[int], Call]) -> Callable[[int], Calls]:
 
 FAULTS = (
     Fault(
-        "pot-swapped", "pot", "the wires of this potentiometer and of the next joint's are exchanged", "calibrate",
+        "pot-swapped", "pot", "Two joints' wires exchanged",
+        "the wires of this potentiometer and of the next joint's are exchanged", "calibrate",
         "<first> reads .* and did not move, but .<second> did: their wires are swapped",
         lambda pot: (("swap", pot, _near(pot)),),
     ),
     Fault(
-        "arms-swapped", "arm", "the leader's plug is where the follower's belongs, and the other way round",
+        "arms-swapped", "arm", "Plugs of leader and follower exchanged",
+        "the leader's plug is where the follower's belongs, and the other way round",
         "calibrate", "eader potentiometer 0 reads .* but follower potentiometer 0 did: the two arms are swapped",
         _at_every_joint(lambda joint: ("swap", joint, joint + JOINTS)),
     ),
     Fault(
-        "pot-reversed", "pot", "the two ends of the track are exchanged, so that it reads the other way", "calibrate",
+        "pot-reversed", "pot", "Ends of its track exchanged",
+        "the two ends of the track are exchanged, so that it reads the other way", "calibrate",
         r'"reversed": \[[^]]*"<id>"', _at_pot(PotFault.REVERSED), ends="mended",
     ),
     Fault(
-        "pot-crossed", "pot", "the wiper is on 5 V and an end of the track on the pin", "calibrate",
+        "pot-crossed", "pot", "Wiper and 5 V exchanged",
+        "the wiper is on 5 V and an end of the track on the pin", "calibrate",
         "<pot> reads .* and hardly changes .* its wiper's wire and an end's are exchanged", _at_pot(PotFault.CROSSED),
     ),
     Fault(
-        "pot-open", "pot", "the wiper's wire is off, and a pull-down wins", "doctor",
+        "pot-open", "pot", "Wiper's wire off",
+        "the wiper's wire is off, and a pull-down wins", "doctor",
         "<pot> reads 0..0 of 1023, at a rail", _wire(Wiring.OPEN),
     ),
     Fault(
-        "pot-floating", "pot", "the wiper's wire is off, and nothing pulls the pin down", "doctor",
+        "pot-floating", "pot", "Wiper's wire off, and no pull-down",
+        "the wiper's wire is off, and nothing pulls the pin down", "doctor",
         "These read alike: .*<pot>", lambda pot: (("let_float", pot, True),),
     ),
     Fault(
-        "pot-shorted", "pot", "the wiper's wire touches 5 V", "doctor",
+        "pot-shorted", "pot", "Wiper's wire touches 5 V",
+        "the wiper's wire touches 5 V", "doctor",
         "<pot> reads 1023..1023 of 1023, at a rail", _wire(Wiring.SHORTED),
     ),
     Fault(
-        "pot-touching", "pot", "the wiper's wire touches that of the next joint", "doctor",
+        "pot-touching", "pot", "Wire touches the next joint's",
+        "the wiper's wire touches that of the next joint", "doctor",
         "These read alike: .<first> and .<second>", lambda pot: (("touch", pot, _near(pot)),),
     ),
     Fault(
-        "pot-loose", "pot", "the wiper's wire is off for 2 ms again and again", "doctor",
+        "pot-loose", "pot", "Loose wire",
+        "the wiper's wire is off for 2 ms again and again", "doctor",
         r"Readings jumped: .<pot> \d+ times", _at_pot(PotFault.LOOSE),
     ),
     Fault(
-        "pot-noisy", "pot", "the wiper's wire runs along a motor's", "doctor",
+        "pot-noisy", "pot", "Wire beside a motor's",
+        "the wiper's wire runs along a motor's", "doctor",
         r"Noisy, in counts rms: .<pot> \d", _at_pot(PotFault.NOISY),
     ),
     Fault(
-        "pot-humming", "pot", "the mains reach the wiper's wire", "doctor",
+        "pot-humming", "pot", "Mains hum",
+        "the mains reach the wiper's wire", "doctor",
         r"Mains hum: .<pot> \d.* counts at 50 Hz", _at_pot(PotFault.HUMMING), ends="noted",
     ),
     Fault(
-        "pot-dead-zone", "pot", "the track is mounted so that its dead zone lies within the joint's range", "calibrate",
+        "pot-dead-zone", "pot", "Dead zone within the range",
+        "the track is mounted so that its dead zone lies within the joint's range", "calibrate",
         "<pot> jumps from one end of its track to the other .* its dead zone lies there", _at_pot(PotFault.DEAD_ZONE),
     ),
     Fault(
-        "pot-slipping", "pot", "its shaft slips and loses a part of every way up", "calibrate",
+        "pot-slipping", "pot", "Shaft slips",
+        "its shaft slips and loses a part of every way up", "calibrate",
         r"<pot> (reads? \d+|reaches an end|turned the other way)", _at_pot(PotFault.SLIPPING),
     ),
     Fault(
-        "pot-frozen", "pot", "its shaft does not turn with the joint", "calibrate",
+        "pot-frozen", "pot", "Shaft does not turn",
+        "its shaft does not turn with the joint", "calibrate",
         "<pot> reads .* and did not move: check that its shaft", _at_pot(PotFault.FROZEN),
     ),
     Fault(
-        "motor-swapped", "motor", "this motor and the next joint's are on each other's drivers", "calibrate",
+        "motor-swapped", "motor", "Two motors exchanged",
+        "this motor and the next joint's are on each other's drivers", "calibrate",
         "the motor of joint <low> moved joint <high>: their motors, or .* are swapped", _swap_motors,
     ),
     Fault(
-        "motor-reversed", "motor", "both wires of the motor are exchanged", "calibrate",
+        "motor-reversed", "motor", "Turns the other way",
+        "both wires of the motor are exchanged", "calibrate",
         r'"joint": <joint>, "sign": -1', _motor(-1.0), ends="mended",
     ),
     Fault(
-        "motor-weak", "motor", "the motor or its driver gives a fifth of its torque", "calibrate",
+        "motor-weak", "motor", "Weak motor",
+        "the motor or its driver gives a fifth of its torque", "calibrate",
         "The motor of joint <joint> moved it by .* mrad a volt, .* it is weak", _motor(WEAK_GAIN), ends="noted",
     ),
     Fault(
-        "motor-dead", "motor", "a wire of the motor is off", "calibrate",
+        "motor-dead", "motor", "A wire of the motor off",
+        "a wire of the motor is off", "calibrate",
         "the motor of joint <joint> did not move it", _motor(0.0),
     ),
     Fault(
-        "no-supply", "arm", "the motors' supply is off", "calibrate",
+        "no-supply", "arm", "Motors' supply off",
+        "the motors' supply is off", "calibrate",
         "the motor of joint 0 did not move it with .* check that the motors' supply is on",
         _at_every_joint(lambda joint: ("wire_motor", joint, 0.0, joint)),
     ),
     Fault(
-        "wrong-supply", "arm", f"the motors' supply has {OTHER_SUPPLY_V:g} V, and the board counts on another one",
+        "wrong-supply", "arm", f"Supply of {OTHER_SUPPLY_V:g} V",
+        f"the motors' supply has {OTHER_SUPPLY_V:g} V, and the board counts on another one",
         "doctor", "The board counts on 15 V for the motors, not 24 V",
         lambda number: (("change_supply", OTHER_SUPPLY_V),), options=("--supply", f"{OTHER_SUPPLY_V:g}"),
     ),
     Fault(
-        "brown-out", "arm", "the board lives on the motors' supply, which sinks when a motor draws", "calibrate",
+        "brown-out", "arm", "Supply sinks when a motor draws",
+        "the board lives on the motors' supply, which sinks when a motor draws", "calibrate",
         "restarted while the motor of joint 0 was driven", lambda number: (("share_supply",),),
     ),
 )  # fmt: skip
 BY_NAME = {fault.name: fault for fault in FAULTS}
+
+
+def facts(fault: Fault) -> dict[str, str]:
+    """A fault for a list from which a person chooses."""
+    return {"name": fault.name, "group": GROUPS[fault.on], "title": fault.title, "description": fault.says}
 
 
 def inject(bench: Bench, words: str) -> str:

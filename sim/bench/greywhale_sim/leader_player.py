@@ -31,7 +31,7 @@ class LeaderPlayer(_native.Person):
         self._slice_s = slice_s
 
     def take_up(self, motion: Trajectory) -> None:
-        """Play another motion from the next enable on; held arms are brought to its first pose within a second."""
+        """Play another motion, from its first pose on: at work now, else from the next enable on."""
         self.take_up_rows(*_rows(motion, self._slice_s))
 
     def bring(self, leader: Floats | None, follower: Floats | None, seconds: float) -> None:

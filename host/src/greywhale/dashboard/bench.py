@@ -32,8 +32,8 @@ class BenchControls:
                 return {}
             case {"motion": "hold"}:
                 self._do(f"lead {' '.join(map(str, self._do('status')['leader']))}")
-            case {"motion": "reaches"}:
-                self._do("leader reaches")
+            case {"motion": str(name)} if name in (one["name"] for one in self.controls()["motions"]):
+                self._do(f"leader {name}")
             case {"motion": str(file)}:
                 self._do(f"leader {shlex.quote(str(self._folder.file(file)))}")
             case {"fault": None}:

@@ -52,6 +52,7 @@ function readersFor(views: readonly string[], controls: BenchControls): Readonly
     ["view", (text, state) => ({ ...state, view: chosen(text, views) })],
     ["joint", (text, state) => ({ ...state, joint: Number(chosen(text, ["0", "1", "2", "3"])) })],
     ["leader", act((text) => ({ leader: fourNumbers(text).map((one, joint) => number(one, minimum[joint]!, maximum[joint]!)) }))],
+    ["motion", act((text) => ({ motion: chosen(text, controls.motions.map(({ name }) => name)) }))],
     ["fault", act((text) => ({ fault: knownFault(text, controls) }))],
   ]);
   for (const size of SIZES) {

@@ -78,10 +78,23 @@ export type Range = { readonly minimum: number; readonly maximum: number; readon
 export const SIZES = ["supply", "load", "noise", "play", "speed"] as const;
 export type Size = (typeof SIZES)[number];
 
+/** A motion that the bench's leader makes by itself; `title` says what it does. */
+export type NamedMotion = { readonly name: string; readonly title: string };
+
+/** A fault of a group of its kind, as people say it, and the places where it can be. */
+export type PossibleFault = {
+  readonly name: string;
+  readonly group: string;
+  readonly title: string;
+  readonly description: string;
+  readonly places: readonly string[];
+};
+
 /** The things that can be changed on a simulated bench; what a bench lacks is left out. */
 export type BenchControls = {
   readonly leader: { readonly minimum: readonly number[]; readonly maximum: readonly number[] };
-  readonly faults: readonly { readonly name: string; readonly places: readonly string[]; readonly description: string }[];
+  readonly faults: readonly PossibleFault[];
+  readonly motions: readonly NamedMotion[];
   /** The faults of now, as they are wished; left out by a bench that does not tell. */
   readonly broken?: readonly string[];
 } & { readonly [size in Size]?: Range };

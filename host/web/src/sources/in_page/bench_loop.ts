@@ -3,7 +3,7 @@
 import type { BenchWish, Range, Size } from "../../session/services";
 import { encodeFrame, FrameDecoder } from "../../link/frames";
 import { EnableRequest, LeadRequest, RenewRequest, StopRequest } from "../../link/schema";
-import type { BenchData } from "./messages";
+import type { BenchData, Motion } from "./messages";
 import type { BenchModule } from "./module";
 
 const LEASE_MS = 300;
@@ -19,10 +19,12 @@ export class BenchLoop {
   private ticks = 0;
   private renewing = false; // while the page wants the motors on
   private starts: number;
-  private reachesSince: number | null = 0; // tick; null while a person leads
+  private motion: Motion | null; // null while a person leads
+  private since = 0; // tick at which the motion began
   private readonly requests = new FrameDecoder();
 
   constructor(private readonly module: BenchModule, private readonly data: BenchData) {
+    this.motion = data.motions[0]!;
     module.call("power", 1);
     this.starts = module.call("starts");
   }
@@ -40,7 +42,7 @@ export class BenchLoop {
   tick(): Uint8Array {
     this.ticks++;
     if (this.renewing && this.ticks % RENEW_TICKS === 0) this.send(RENEW);
-    if (this.reachesSince !== null) this.module.lead(this.reaching((this.ticks - this.reachesSince) / 1000));
+    if (this.motion) this.module.lead(placeIn(this.motion, (this.ticks - this.since) / 1000));
     return this.module.tick();
   }
 
@@ -75,14 +77,17 @@ export class BenchLoop {
   }
 
   private leadTo(angles: readonly number[]): void {
-    this.reachesSince = null;
+    this.motion = null;
     this.module.lead(angles);
   }
 
   private move(motion: string): void {
-    if (motion === "hold") this.leadTo(this.module.leader());
-    else if (motion === "reaches") this.reachesSince = this.ticks;
-    else throw new Error(`This bench has no motion "${motion}"; it has reaches and hold.`);
+    if (motion === "hold") return this.leadTo(this.module.leader());
+    const { motions } = this.data;
+    const wanted = motions.find(({ name }) => name === motion);
+    if (!wanted) throw new Error(`This bench has no motion "${motion}"; it has ${motions.map(({ name }) => name).join(", ")} and hold.`);
+    this.motion = wanted;
+    this.since = this.ticks;
   }
 
   private break(fault: string | null): void {
@@ -103,17 +108,16 @@ export class BenchLoop {
     if (play !== undefined) this.module.call("scale_play", within("play", "times", play, this.data.play));
     if (speed !== undefined) this.speed = within("speed", "times", speed, SPEED);
   }
+}
 
-  /** The place of a person's hand that reaches here and there, and back again, for ever. */
-  private reaching(seconds: number): number[] {
-    const { hz, rows } = this.data.reaches;
-    const last = rows.length - 1;
-    const along = (seconds * hz) % (2 * last);
-    const at = along < last ? along : 2 * last - along;
-    const row = Math.min(Math.floor(at), last - 1);
-    const [from, to] = [rows[row]!, rows[row + 1]!];
-    return from.map((angle, joint) => angle + (at - row) * (to[joint]! - angle));
-  }
+/** The place of a person's hand in a motion that goes there and back again, for ever. */
+function placeIn({ hz, rows }: Motion, seconds: number): number[] {
+  const last = rows.length - 1;
+  const along = (seconds * hz) % (2 * last);
+  const at = along < last ? along : 2 * last - along;
+  const row = Math.min(Math.floor(at), last - 1);
+  const [from, to] = [rows[row]!, rows[row + 1]!];
+  return from.map((angle, joint) => angle + (at - row) * (to[joint]! - angle));
 }
 
 function within(what: string, unit: string, value: number, { minimum, maximum }: Range): number {

@@ -29,7 +29,7 @@ export class PageBoard implements Board, BenchActions, Pick<BoardPort, "flash"> 
   private wished = 0;
   private readonly sizes: Record<Size, number>;
   private broken: readonly string[] = [];
-  private led: readonly number[] | "held" | null = null; // null while it reaches here and there
+  private led: readonly number[] | string; // or the motion, by its name
   private keptSentence = ""; // of what the browser had kept; told once the board is there
   private unkeptTold = false;
   private port: PagePort | null = null; // while the board is being flashed
@@ -41,6 +41,7 @@ export class PageBoard implements Board, BenchActions, Pick<BoardPort, "flash"> 
     private readonly firmware: (board: string) => Promise<NamedText>,
     private readonly store: Store,
   ) {
+    this.led = data.motions[0]!.name;
     this.sizes = Object.fromEntries(SIZES.map((size) => [size, this.range(size).value])) as Record<Size, number>;
     worker.addEventListener("message", ({ data: message }: MessageEvent<FromBench>) => this.heard(message));
     worker.addEventListener("error", ({ message }) => this.failed(`The bench does not start (${message || "its worker is refused"}); reload the page.`));
@@ -157,11 +158,12 @@ export class PageBoard implements Board, BenchActions, Pick<BoardPort, "flash"> 
   }
 
   async controls(): Promise<BenchControls> {
-    const { leader, faults } = this.data;
+    const { leader, faults, motions } = this.data;
     return {
       leader,
       broken: this.broken,
-      faults: faults.map(({ name, description, places }) => ({ name, description, places: Object.keys(places).filter(Boolean) })),
+      faults: faults.map((fault) => ({ ...fault, places: Object.keys(fault.places).filter(Boolean) })),
+      motions: motions.map(({ name, title }) => ({ name, title })),
       ...Object.fromEntries(SIZES.map((size) => [size, { ...this.range(size), value: this.sizes[size] }])),
     };
   }
@@ -176,7 +178,7 @@ export class PageBoard implements Board, BenchActions, Pick<BoardPort, "flash"> 
     if ("power" in wish && !wish.power) this.listener?.link({ open: true, port: PORT, sentence: UNPOWERED });
     if ("fault" in wish) this.takeFault(wish.fault);
     else if ("leader" in wish) this.led = [...wish.leader];
-    else if ("motion" in wish) this.led = wish.motion === "hold" ? "held" : null;
+    else if ("motion" in wish) this.led = wish.motion;
     for (const size of SIZES) {
       if (size in wish) this.sizes[size] = (wish as Readonly<Record<Size, number>>)[size];
     }
@@ -194,11 +196,12 @@ export class PageBoard implements Board, BenchActions, Pick<BoardPort, "flash"> 
 
   /** The wishes that would bring a fresh bench to where this one is, its leader being at these angles now. */
   condition(leader: readonly number[]): { readonly sizes: readonly BenchWish[]; readonly acts: readonly BenchWish[] } {
-    const led = this.led === "held" ? leader : this.led;
+    const led = this.led === "hold" ? leader : this.led;
+    const fresh = led === this.data.motions[0]!.name;
     return {
       sizes: SIZES.filter((size) => this.sizes[size] !== this.range(size).value).map((size) => ({ [size]: this.sizes[size] })),
       acts: [
-        ...(led ? [{ leader: led.map((angle) => Number(angle.toFixed(3))) }] : []),
+        ...(fresh ? [] : [typeof led === "string" ? { motion: led } : { leader: led.map((angle) => Number(angle.toFixed(3))) }]),
         ...this.broken.map((fault) => ({ fault })),
       ],
     };

@@ -1,6 +1,6 @@
 // Messages between the page and the worker with its bench, and the parts of a bench.
 
-import type { ArmDescription, BenchControls, BenchWish, Range } from "../../session/services";
+import type { ArmDescription, BenchControls, BenchWish, NamedMotion, Range } from "../../session/services";
 
 /** A call of the module: its export's name, and numbers. */
 export type Call = readonly [name: string, ...given: number[]];
@@ -8,7 +8,10 @@ export type Call = readonly [name: string, ...given: number[]];
 /** A program and the first address of its bytes, which are in base64. */
 export type Program = { readonly address: number; readonly bytes: string };
 
-/** As tools/site writes it: the board, the arm, its mistakes, a person's motion. */
+/** Poses of the leader in rad, so many a second. */
+export type Motion = NamedMotion & { readonly hz: number; readonly rows: readonly (readonly number[])[] };
+
+/** As tools/site writes it: the board, the arm, its mistakes, a person's motions. */
 export type BenchData = {
   readonly bootloader: Program;
   readonly numbers: readonly number[]; // of the board's wires and of the arm, as the module takes them
@@ -20,11 +23,13 @@ export type BenchData = {
   readonly play: Range;
   readonly faults: readonly {
     readonly name: string;
+    readonly group: string;
+    readonly title: string;
     readonly description: string;
     readonly places: Readonly<Record<string, readonly Call[]>>; // "" for a fault without a place
   }[];
-  /** Poses of the leader in rad, so many a second. */
-  readonly reaches: { readonly hz: number; readonly rows: readonly (readonly number[])[] };
+  /** The first one is what the leader does until a person leads. */
+  readonly motions: readonly Motion[];
 };
 
 export type ToBench =
