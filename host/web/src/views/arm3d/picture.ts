@@ -21,7 +21,7 @@ export class ArmPicture {
   private readonly canvas = el("canvas", { attrs: { role: "img", "aria-label": "The arm: follower solid, leader as a ghost" }, hidden: true });
   private readonly words = el("p", { class: "quiet" }, "Loading the arm.");
   private readonly mark = el("p", { class: "mark", hidden: true });
-  private readonly stage = el("div", { class: "stage" }, this.canvas, this.mark);
+  private readonly stage: HTMLElement;
   private flat: FlatArm | null = null;
   private scene: ArmScene | null = null;
   private leaderControl: LeaderControl | null = null;
@@ -29,9 +29,9 @@ export class ArmPicture {
 
   /** `services` bring the arm. */
   constructor(private readonly session: Session, private readonly services: Pick<Services, "arm">) {
-    this.element = el("section", { class: "card arm", attrs: { "aria-label": "The arm" } },
-      el("div", { class: "tools" }, ...PRESET_NAMES.map((preset) => button(upperFirst(preset), () => this.scene?.look(preset)))),
-      this.stage, this.words);
+    const sides = PRESET_NAMES.map((preset) => button(upperFirst(preset), () => this.scene?.look(preset), { title: "Look from there" }));
+    this.stage = el("div", { class: "stage" }, this.canvas, this.mark, el("div", { class: "sides" }, ...sides));
+    this.element = el("section", { class: "card arm", attrs: { "aria-label": "The arm" } }, this.stage, this.words);
     themeChanged.on(() => this.scene?.paint(colours(), isDark()));
     new ResizeObserver(() => this.resize()).observe(this.stage);
   }

@@ -30,7 +30,7 @@ export class DrawnMotion {
     const duration = select("Duration", DURATIONS_S.map((s) => [String(s), `${s} s`] as const),
       (chosen) => { this.durationS = Number(chosen); });
     duration.value = String(this.durationS);
-    this.element = el("section", { class: "card" }, el("h2", {}, "Draw a motion"),
+    this.element = el("details", { class: "card" }, el("summary", {}, "Draw a motion"),
       el("div", { class: "row" }, joint, duration, this.play, button("Clear", () => this.clear())),
       this.picture,
       el("p", { class: "quiet" }, "Drag from left to right; the highest and lowest angles are the leader's limits."));

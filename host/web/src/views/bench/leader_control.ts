@@ -5,6 +5,8 @@ import { JOINTS } from "../../session/samples";
 import type { Session } from "../../session/session";
 
 export class LeaderControl {
+  /** The joint that was led last. */
+  joint = 0;
   private readonly wanted: number[] = new Array<number>(JOINTS).fill(0);
   private held = false;
   private sending = false;
@@ -31,6 +33,7 @@ export class LeaderControl {
     }
     if (!this.held) this.wanted.splice(0, JOINTS, ...this.session.samples.newest("leader"));
     this.held = true;
+    this.joint = joint;
     this.wanted[joint] = angle;
     this.waiting = true;
     void this.send();

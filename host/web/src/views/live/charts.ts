@@ -19,6 +19,12 @@ const PLANS: readonly Plan[] = [
 ];
 const PIXELS_A_COLUMN = 1.5;
 
+/** A part of the charts: the one that shows how a joint follows, as low as may stand beside other things. */
+export const ANGLE_ALONE: Look = { plans: PLANS.slice(0, 1), heights: [128] };
+const WHOLE: Look = { plans: PLANS, heights: [230, 150, 150] };
+const NARROW_HEIGHTS = [170, 120, 120]; // at most, where it is narrow
+type Look = { readonly plans: readonly Plan[]; readonly heights: readonly number[] };
+
 /** Samples to draw, and the colours of their joints. */
 export type Layer = { readonly samples: Samples; readonly shade: (shades: Colours, joint: number) => string };
 
@@ -32,7 +38,7 @@ export class Charts {
   private plots: { plot: uPlot; traces: readonly number[] }[] = [];
   private readonly shown = new Array<boolean>(JOINTS).fill(true);
 
-  constructor(private layers: readonly Layer[], private readonly window: TimeWindow) {
+  constructor(private layers: readonly Layer[], private readonly window: TimeWindow, private readonly look = WHOLE) {
     new ResizeObserver(() => this.resize()).observe(this.element);
   }
 
@@ -63,14 +69,15 @@ export class Charts {
     this.element.replaceChildren();
     const shades = colours();
     this.pictures = this.layers.map(emptyPicture);
-    this.plots = PLANS.map((plan, place) => {
+    const { plans } = this.look;
+    this.plots = plans.map((plan, place) => {
       const traces = plan.of.flatMap((quantity) =>
         [...this.shown.keys()].filter((joint) => this.shown[joint]).map((joint) => traceOf(quantity, joint)));
       const frame = el("section", { class: "chart", attrs: { "aria-label": `${plan.title} in ${plan.unit}` } },
         el("h3", {}, `${plan.title} `, el("span", { class: "unit" }, plan.unit)));
       this.element.append(frame);
       const plot = new uPlot(
-        this.options(plan, traces, shades, place === PLANS.length - 1),
+        this.options(plan, traces, shades, place === plans.length - 1),
         [[], ...this.layers.flatMap(() => traces.map(() => []))], frame,
       );
       this.wire(plot);
@@ -142,7 +149,8 @@ export class Charts {
     if (!width) return;
     const narrow = width < 560;
     this.plots.forEach(({ plot }, place) => {
-      const height = place === 0 ? (narrow ? 170 : 230) : (narrow ? 120 : 150);
+      const usual = this.look.heights[place]!;
+      const height = narrow ? Math.min(usual, NARROW_HEIGHTS[place]!) : usual;
       plot.setSize({ width, height: place === this.plots.length - 1 ? height + 22 : height });
     });
   }
