@@ -103,7 +103,7 @@ async function showBench({ code, data, worker, tuner, firmware, docs }: Parts): 
     document.getElementById("view")!.focus(); // the button is gone
   });
   const views = [
-    beside(new ArmView(arm), cards), new LiveView(session), controller, new ParametersView(session), new BenchView(session, board, leaderControl, null, benchFirmware),
+    beside(new ArmView(arm), cards), new LiveView(session), controller, new ParametersView(session), new BenchView(session, board, leaderControl, arm, null, benchFirmware),
   ];
   let state: PageState | null = null;
   let problem = "";

@@ -52,6 +52,6 @@ function addServices(shell: Shell, session: Session, services: Services): void {
     if (!(await services.state()).sim) return;
     const leaderControl = new LeaderControl(services.bench, session);
     arm.leadBy(leaderControl);
-    shell.add(new BenchView(session, services.bench, leaderControl, services));
+    shell.add(new BenchView(session, services.bench, leaderControl, arm, services));
   });
 }
