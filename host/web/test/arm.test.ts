@@ -44,10 +44,12 @@ function corners(root: Object3D): Vector3[] {
   return found;
 }
 
-test("the whole arm is in the picture in every pose, from every side, however wide it is", () => {
+const atOnce = async (): Promise<void> => undefined;
+
+test("the whole arm is in the picture in every pose, from every side, however wide it is", async () => {
   for (const one of ARMS) {
     const extent = extentOf(one);
-    const parts = makeParts(one, extent.floor);
+    const parts = await makeParts(one, extent.floor, atOnce);
     const model = new ArmModel(one, parts, () => []);
     parts.links.forEach((geometry, joint) => model.frames[joint]!.add(new Mesh(geometry)));
     for (const pose of extremes(one)) {
@@ -71,8 +73,8 @@ test("the whole arm is in the picture in every pose, from every side, however wi
   }
 });
 
-test("a leader where its follower is draws nothing, whatever noise is on both; one that is apart shows what is", () => {
-  const ghost = new Ghost(ARMS[0]!, makeParts(ARMS[0]!, -1));
+test("a leader where its follower is draws nothing, whatever noise is on both; one that is apart shows what is", async () => {
+  const ghost = new Ghost(ARMS[0]!, await makeParts(ARMS[0]!, -1, atOnce));
   const shown = (): boolean[] => ghost.model.links.map((meshes) => meshes.every(({ visible }) => visible));
   for (const noise of [0, 0.004, -0.02]) {
     ghost.show([0.3, 0.7 + noise, -0.4, noise], [0.3, 0.7, -0.4, 0]);
@@ -84,8 +86,8 @@ test("a leader where its follower is draws nothing, whatever noise is on both; o
   assert.deepEqual(shown(), [true, true, true, true]);
 });
 
-test("a joint that is fixed has no ring and no arc", () => {
-  const parts = makeParts(ARMS[2]!, -1);
+test("a joint that is fixed has no ring and no arc", async () => {
+  const parts = await makeParts(ARMS[2]!, -1, atOnce);
   const model = new ArmModel(ARMS[2]!, parts, () => []);
   new Gauges(model, ARMS[2]!, parts.radii);
   assert.deepEqual(model.frames.map(({ children }) => children.filter((part) => part instanceof Mesh).length), [1, 1, 0, 0]);

@@ -19,5 +19,5 @@ class Motion:
 
 MOTIONS = {
     "reaches": Motion("Reach here and there", human_reaches),
-    "steps": Motion("Take the steps of the paper", multi_steps),
+    "steps": Motion("Take the paper's steps", multi_steps),
 }

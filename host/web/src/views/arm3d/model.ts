@@ -27,7 +27,8 @@ export function motorRadii(links: readonly number[]): readonly number[] {
   });
 }
 
-export function makeParts(arm: ArmDescription, floor: number): Parts {
+/** Makes them one after the other, and lets the page do all else between them. */
+export async function makeParts(arm: ArmDescription, floor: number, pause: () => Promise<void>): Promise<Parts> {
   const links = shares(arm);
   const radii = motorRadii(links);
   const motor = (joint: number): string => (arm.joints[joint]!.fixed ? STEEL : MOTOR);
@@ -42,17 +43,22 @@ export function makeParts(arm: ArmDescription, floor: number): Parts {
       tube(motor(1), "side", -inner, 0.08, shoulder), tube(STEEL, "side", 0.08, 0.093, 0.8 * shoulder), ...cap(1, "side", 0.093, 0.118, 0.3 * shoulder),
     ].map((part) => part.translate(0, 0, base)),
   );
+  await pause();
   const outer = -THICK / 2 - MOTOR_OUT;
   const arm1 = together(
     bar(SHELL, upper, shoulder, wrist, THICK), tube(STEEL, "side", -THICK / 2 - 0.012, 0, 0.55 * shoulder),
     tube(motor(2), "side", outer, 0.01, 0.94 * wrist).translate(upper, 0, 0),
     ...cap(2, "side", outer - 0.02, outer, 0.34 * wrist).map((part) => part.translate(upper, 0, 0)),
   );
+  await pause();
   const arm2 = together(
     bar(SHELL, middle, wrist, roll, 0.8 * THICK),
     tube(motor(3), "along", 0.45 * middle, middle - 0.004, 0.86 * roll),
   );
-  return { links: [turret, arm1, arm2, gripper(hand, roll)], stand: stand(floor, motor(0)), radii };
+  await pause();
+  const end = gripper(hand, roll);
+  await pause();
+  return { links: [turret, arm1, arm2, end], stand: stand(floor, motor(0)), radii };
 }
 
 /** The hand: a flange, a palm, and two fingers that end at the tip. */

@@ -14,11 +14,12 @@ import { FlatArm } from "./flat";
 import type { ArmScene, Preset } from "./scene";
 
 const PRESET_NAMES: readonly Preset[] = ["corner", "front", "side", "top"];
+const GAUGES = "Rings grow with the voltage; arcs end at the stops, and are red when one is reached";
 const DEFAULT_SUPPLY_V = TABLE.named("supply_mv").initial / 1000;
 
 export class ArmPicture {
   readonly element: HTMLElement;
-  private readonly canvas = el("canvas", { attrs: { role: "img", "aria-label": "The arm: follower solid, leader as a ghost" }, hidden: true });
+  private readonly canvas = el("canvas", { attrs: { role: "img", "aria-label": "The arm: follower solid, leader as a ghost" }, hidden: true, title: GAUGES });
   private readonly words = el("p", { class: "quiet" }, "Loading the arm.");
   private readonly mark = el("p", { class: "mark", hidden: true });
   private readonly stage: HTMLElement;
@@ -76,7 +77,7 @@ export class ArmPicture {
     if (scene.lost) return;
     this.hide(false);
     this.resize();
-    setText(this.words, `${upperFirst(name)}: solid is the follower, the ghost the leader. Rings grow with the voltage, arcs end at the stops.${this.leaderControl ? " Drag a link to lead." : ""}`);
+    setText(this.words, `${upperFirst(name)}: solid is the follower, a ghost the leader.${this.leaderControl ? " Drag a link to lead." : ""}`);
   }
 
   /** Hides the canvas, and shows the lines in its place; or the other way round. */

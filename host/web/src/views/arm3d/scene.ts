@@ -1,7 +1,7 @@
 // The arm in three dimensions: follower solid, leader a ghost, stops as arcs, voltage as rings, a fault in red.
 
 import {
-  DirectionalLight, HemisphereLight, Mesh, MeshLambertMaterial, PerspectiveCamera, Raycaster, Scene, Vector2, Vector3, WebGLRenderer,
+  DirectionalLight, HemisphereLight, Light, Mesh, MeshLambertMaterial, PerspectiveCamera, Raycaster, Scene, Vector2, Vector3, WebGLRenderer,
   type Object3D,
 } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
@@ -10,22 +10,23 @@ import type { ArmDescription } from "../../session/services";
 import type { Colours } from "../../parts/theme";
 import { Floor } from "./floor";
 import { Gauges } from "./gauges";
-import { finished, pause } from "./graphics";
+import { contextOf, finished, pause } from "./graphics";
 import { Ghost } from "./leader";
-import { ArmModel, makeParts } from "./model";
+import { ArmModel, makeParts, type Parts } from "./model";
 import { cameraPlace, extentOf, type Extent, type Point } from "./reach";
 
 const DRAG_RAD = 0.008; // a pixel
 const ACROSS = new Set([0, 3]); // joints that turn by a drag to the side; the others by one up or down
 export const FIELD = (30 * Math.PI) / 180;
 const FIRST_PIXELS = 64; // a side, of the picture with which the graphics processor learns what to draw
-const RATIOS = [2, 1.4, 1, 0.75]; // pixels a pixel of the page: less where a picture takes long
-const SLOW_MS = 60; // of a picture
-const SLOW_PICTURES = 3; // one after the other, until there are fewer pixels
+const RATIOS = [0.5, 0.75, 1, 2]; // pixels a pixel of the page: more and more, as long as pictures are quick
+const QUICK_MS = 25; // of a picture
+const SLOW_MS = 60;
+const ALIKE = 4; // pictures one after the other, until there are more pixels, or fewer for good
 
 /** Where from the middle of all that the arm reaches one looks at it. */
 export const PRESETS: Readonly<Record<"corner" | "front" | "side" | "top", Point>> = {
-  corner: [0.6, -0.75, 0.36], front: [1, 0, 0.12], side: [0, -1, 0.1], top: [0, -0.012, 1],
+  corner: [0.25, -0.95, 0.36], front: [1, 0, 0.12], side: [0, -1, 0.1], top: [0, -0.012, 1],
 };
 export type Preset = keyof typeof PRESETS;
 
@@ -44,10 +45,11 @@ export class ArmScene {
   private readonly ghost: Ghost;
   private readonly floor: Floor;
   private readonly gauges: Gauges;
-  private readonly extent: Extent;
   private preset: Preset | null = "corner"; // null once a person has turned it
   private ratio = 0; // place in RATIOS
-  private slow = 0; // pictures
+  private most = RATIOS.length - 1; // the place beyond which pictures were slow
+  private quick = 0; // pictures one after the other
+  private slow = 0;
   private size: readonly [width: number, height: number] = [FIRST_PIXELS, FIRST_PIXELS];
   private shades: Colours | null = null;
   private moved = true;
@@ -64,12 +66,15 @@ export class ArmScene {
     const renderer = new WebGLRenderer({ canvas, context });
     renderer.debug.checkShaderErrors = false; // to ask is to wait
     await pause();
-    return new ArmScene(renderer, arm);
+    const extent = extentOf(arm);
+    await pause();
+    const parts = await makeParts(arm, extent.floor, pause);
+    return new ArmScene(renderer, arm, extent, parts);
   }
 
-  private constructor(private readonly renderer: WebGLRenderer, private readonly arm: ArmDescription) {
-    this.extent = extentOf(arm);
-    const parts = makeParts(arm, this.extent.floor);
+  private constructor(
+    private readonly renderer: WebGLRenderer, private readonly arm: ArmDescription, private readonly extent: Extent, parts: Parts,
+  ) {
     const solid = new MeshLambertMaterial({ vertexColors: true });
     this.follower = new ArmModel(arm, parts, () => [solid]);
     this.gauges = new Gauges(this.follower, arm, parts.radii);
@@ -97,9 +102,18 @@ export class ArmScene {
     this.renderer.setSize(FIRST_PIXELS, FIRST_PIXELS, false);
     this.ghost.show([1, 1, 1, 1], [0, 0, 0, 0]); // so that it is compiled as well
     await this.renderer.compileAsync(this.scene, this.camera);
-    await finished(context);
-    this.renderer.render(this.scene, this.camera);
-    await finished(context);
+    for (const program of this.renderer.info.programs ?? []) { // to ask what each has is to wait for it
+      await finished(context);
+      program.getUniforms();
+      program.getAttributes();
+    }
+    const parts = this.scene.children.filter((part) => !(part instanceof Light));
+    for (const part of parts) part.visible = false;
+    for (const part of parts) {
+      part.visible = true;
+      this.renderer.render(this.scene, this.camera);
+      await finished(context);
+    }
     this.fit();
   }
 
@@ -139,12 +153,17 @@ export class ArmScene {
     this.renderer.render(this.scene, this.camera); // a canvas of another size is empty
   }
 
-  /** Hears how long a picture took; where they take long, the next ones have fewer pixels. */
+  /** Hears how long a picture took; by that the next ones have more pixels or fewer. */
   took(ms: number): void {
+    this.quick = ms < QUICK_MS ? this.quick + 1 : 0;
     this.slow = ms > SLOW_MS ? this.slow + 1 : 0;
-    if (this.slow < SLOW_PICTURES || this.ratio === RATIOS.length - 1) return;
-    this.slow = 0;
-    this.ratio++;
+    const up = this.quick === ALIKE && this.ratio < this.most && RATIOS[this.ratio]! < devicePixelRatio;
+    const down = this.slow === ALIKE && this.ratio > 0;
+    if (this.quick === ALIKE) this.quick = 0;
+    if (this.slow === ALIKE) this.slow = 0;
+    if (!up && !down) return;
+    this.ratio += up ? 1 : -1;
+    if (down) this.most = this.ratio;
     this.fit();
   }
 
@@ -207,14 +226,5 @@ export class ArmScene {
     this.gauges.show(this.shades, pose.follower, pose.voltage, pose.faulty);
     this.renderer.render(this.scene, this.camera);
     return true;
-  }
-}
-
-/** The renderer of a canvas, null where the browser lacks or forbids it. */
-function contextOf(canvas: HTMLCanvasElement): WebGL2RenderingContext | null {
-  try {
-    return canvas.getContext("webgl2", { antialias: true, alpha: true, stencil: true });
-  } catch {
-    return null;
   }
 }

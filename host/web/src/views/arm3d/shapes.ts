@@ -58,6 +58,12 @@ function painted(geometry: BufferGeometry, colour: string): BufferGeometry {
   plain.deleteAttribute("uv");
   const { r, g, b } = new Color(colour);
   const count = plain.getAttribute("position").count;
-  plain.setAttribute("color", new BufferAttribute(new Float32Array(count * 3).map((_, at) => [r, g, b][at % 3]!), 3));
+  const colours = new Float32Array(3 * count);
+  for (let at = 0; at < count; at++) {
+    colours[3 * at] = r;
+    colours[3 * at + 1] = g;
+    colours[3 * at + 2] = b;
+  }
+  plain.setAttribute("color", new BufferAttribute(colours, 3));
   return plain;
 }

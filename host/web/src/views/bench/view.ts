@@ -114,7 +114,7 @@ export class BenchView implements View {
     }, on: { input: () => show(), change: () => void this.change({ [key]: Number(slider.value) }) } });
     slider.value = String(range.value);
     show();
-    return el("div", { class: "lead-row" }, el("span"), el("span", {}, title), slider, words);
+    return el("div", { class: "lead-row plain" }, el("span", {}, title), slider, words);
   }
 
   frame(): void {
