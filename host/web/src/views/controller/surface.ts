@@ -1,6 +1,7 @@
 // The control surface of one joint: what the law gives for each error and change, where the arm is on it, which rules fire.
 
 import { el, setText } from "../../parts/dom";
+import { colours, isDark, themeChanged } from "../../parts/theme";
 import { TICKS_A_SECOND, type Samples } from "../../session/samples";
 import { infer, inputs, RULES, type Inference, type Settings } from "../../session/law";
 
@@ -9,8 +10,9 @@ const SIZE = 288; // pixels
 const OUTPUTS = ["NU", "ZU", "PU"];
 const ERROR_SETS = ["NE", "ZE", "PE"];
 const CHANGE_SETS = ["NCE", "ZCE", "PCE"];
-const NEGATIVE = [0, 103, 168];
-const POSITIVE = [208, 92, 0];
+// Red, green, blue of -Ku, 0 and +Ku.
+const LIGHT = { negative: [0, 103, 168], nothing: [246, 246, 246], positive: [208, 92, 0] };
+const DARK = { negative: [91, 184, 240], nothing: [28, 42, 50], positive: [240, 154, 62] };
 const TRAIL = 200; // points
 
 export type Point = { readonly x: number; readonly y: number };
@@ -38,6 +40,7 @@ export class Surface {
   private readonly over = el("canvas", { attrs: { "aria-hidden": "true" } });
   private readonly words = el("p", { class: "quiet" });
   private readonly cells: HTMLTableCellElement[][];
+  private settings: Settings | null = null;
 
   constructor() {
     this.field.width = this.field.height = CELLS;
@@ -51,19 +54,24 @@ export class Surface {
         el("figcaption", { class: "quiet" }, "error → right, change of error ↑, blue −Ku to orange +Ku")),
       el("div", {}, el("table", { class: "rules", attrs: { "aria-label": "Rules, and which fire now" } },
         el("thead", {}, head), el("tbody", {}, ...body)), this.words));
+    themeChanged.on(() => {
+      if (this.settings) this.show(this.settings);
+    });
   }
 
   /** Draws the surface of these settings. */
   show(settings: Settings): void {
+    this.settings = settings;
+    const { negative, nothing, positive } = isDark() ? DARK : LIGHT;
     const context = this.field.getContext("2d")!;
     const image = context.createImageData(CELLS, CELLS);
     for (let row = 0; row < CELLS; row++) {
       for (let column = 0; column < CELLS; column++) {
         const u = infer(middle(column), -middle(row), settings).u;
         const tone = Math.round(Math.abs(u) * 12) / 12; // steps show the contours
-        const end = u < 0 ? NEGATIVE : POSITIVE;
+        const end = u < 0 ? negative : positive;
         const at = 4 * (row * CELLS + column);
-        for (let part = 0; part < 3; part++) image.data[at + part] = 246 + tone * (end[part]! - 246);
+        for (let part = 0; part < 3; part++) image.data[at + part] = nothing[part]! + tone * (end[part]! - nothing[part]!);
         image.data[at + 3] = 255;
       }
     }
@@ -75,18 +83,21 @@ export class Surface {
     const context = this.over.getContext("2d")!;
     context.clearRect(0, 0, SIZE, SIZE);
     const shown = points.slice(-TRAIL);
-    context.strokeStyle = "rgba(20, 33, 44, .55)";
+    const { ink } = colours();
+    context.strokeStyle = ink;
+    context.globalAlpha = 0.6;
     context.lineWidth = 1.5;
     context.beginPath();
     for (const { x, y } of shown) context.lineTo(place(x), place(-y));
     context.stroke();
+    context.globalAlpha = 1;
     const now = shown.at(-1);
     if (now) {
-      context.fillStyle = "#14212c";
+      context.fillStyle = ink;
       context.beginPath();
       context.arc(place(now.x), place(-now.y), 5, 0, 2 * Math.PI);
       context.fill();
-      context.strokeStyle = "#fff";
+      context.strokeStyle = isDark() ? "#000" : "#fff";
       context.stroke();
     }
     this.showRules(now ? infer(now.x, now.y, settings) : null, now);
