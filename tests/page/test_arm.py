@@ -28,7 +28,7 @@ def test_the_arm_is_drawn_where_the_board_says_and_leads_by_a_link_that_is_dragg
     page.on("request", lambda request: asked.append(request.url.rpartition("/")[2]))
     page.get_by_role("button", name="Controller").click()
     assert not any(name.startswith("scene") for name in asked)
-    page.get_by_role("button", name="Arm", exact=True).click()
+    page.get_by_role("button", name="Bench", exact=True).click()
     expect(page.get_by_text("Default arm: solid is the follower")).to_be_visible()
     expect(page.get_by_text("Drag a link to lead")).to_be_visible()
     canvas = page.get_by_role("img", name="The arm")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from playwright.sync_api import BrowserContext, Page, expect
 
-from greywhale.protocol.schema import Sample
+from greywhale.protocol.schema import Sample, State
 from tests.page import stage as stages
 from tests.page.stage import Stage, await_state
 
@@ -29,12 +29,27 @@ def test_a_hand_on_the_page_leads_and_the_arm_follows(page: Page, stage: Stage) 
     stage.wait_for(lambda: stage.newest().leader[0] < 0 < stage.newest().leader[1])
 
 
+def test_another_motion_takes_one_click_while_the_arm_follows(page: Page, stage: Stage) -> None:
+    page.get_by_role("button", name="Enable").click()
+    await_state(page, "following")
+    page.get_by_role("button", name="Bench").click()
+    page.get_by_label("Leader, wrist roll, rad").fill("-1")
+    wanted = -1.0 / Sample.LSB["leader"]
+    stage.wait_for(lambda: abs(stage.newest().leader[3] - wanted) < 100)
+    begun = stage.newest().tick
+    page.get_by_role("button", name="Take the paper's steps").click()
+    stage.wait_for(lambda: stage.newest().leader[3] > 0.9 / Sample.LSB["leader"])  # the first step
+    assert {State(sample.state) for sample in stage.samples() if sample.tick >= begun} == {State.FOLLOWING}
+    expect(page.locator(".notice")).to_be_hidden()
+
+
 def test_what_is_broken_on_the_page_is_broken_on_the_bench(page: Page, stage: Stage) -> None:
     page.get_by_role("button", name="Bench").click()
-    page.get_by_label("Fault").select_option("pot-shorted")
-    page.get_by_label("Where").select_option("leader2")
+    page.get_by_label("Fault").select_option("Wiper's wire touches 5 V")
+    page.get_by_label("Where").select_option("leader potentiometer 2, wrist pitch")
     page.get_by_role("button", name="Break", exact=True).click()
-    expect(page.locator(".differences li")).to_have_text("pot-shorted:leader2")
+    broken = "Wiper's wire touches 5 V: leader potentiometer 2, wrist pitch"
+    expect(page.locator(".differences li")).to_have_text(broken)
     page.get_by_role("button", name="Enable").click()
     expect(page.get_by_role("alert").first).to_contain_text("leader potentiometer 2")
     page.get_by_role("button", name="Mend all").click()
@@ -49,6 +64,7 @@ def test_what_is_broken_on_the_page_is_broken_on_the_bench(page: Page, stage: St
 
 def test_a_drawn_motion_leads_the_arm(page: Page, stage: Stage) -> None:
     page.get_by_role("button", name="Bench").click()
+    page.get_by_text("Draw a motion").click()
     expect(page.get_by_role("button", name="Play")).to_be_disabled()
     page.get_by_label("Joint to draw").select_option("2")
     page.get_by_label("Duration").select_option("2")
@@ -75,7 +91,7 @@ def test_a_page_that_only_watches_leaves_the_bench_alone_and_says_why(
     with stages.visit(context, stage) as watcher:
         why = "Another page drives this arm; let go there first."
         watcher.page.get_by_role("button", name="Bench").click()
-        for name in ("Break", "Mend all", "Hold still", "Cut the power", "Press emergency stop"):
+        for name in ("Break", "Mend all", "Hold still", "Cut the power", "Press the emergency stop"):
             expect(watcher.page.get_by_role("button", name=name, exact=True)).to_be_disabled()
         expect(watcher.page.get_by_label("Supply, V")).to_be_disabled()
         expect(watcher.page.locator(".in-the-way .reason")).to_have_text(why)
@@ -102,6 +118,8 @@ def test_a_fault_its_remedy_and_its_end_stand_in_every_view(page: Page, stage: S
         expect(fault).to_contain_text("wiper")
         expect(fault.get_by_role("button", name="Clear fault")).to_be_enabled()
         expect(enable).to_have_attribute("title", "A fault keeps the motors off; do what it says, and clear it.")
+    page.get_by_role("button", name="Bench", exact=True).click()
+    expect(page.locator(".mark")).to_have_text("Follower potentiometer 1, shoulder pitch")
     stage.live(1.0)
     page.get_by_role("button", name="Clear fault").click()
     expect(enable).to_be_enabled()

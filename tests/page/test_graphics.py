@@ -43,7 +43,7 @@ def test_a_browser_without_webgl_says_so_and_all_else_works(context: BrowserCont
     with stages.visit(context, stage, script) as visit:
         page = visit.page
         page.locator("button.enable:enabled").wait_for()
-        page.get_by_role("button", name="Arm", exact=True).click()
+        page.get_by_role("button", name="Bench", exact=True).click()
         expect(page.get_by_text("cannot draw in three dimensions; turn WebGL on")).to_be_visible()
         page.get_by_role("button", name="Enable").click()
         await_state(page, "following")
@@ -58,7 +58,7 @@ def test_a_slow_graphics_processor_holds_up_the_picture_and_not_the_page_that_dr
         page = visit.page
         page.get_by_role("button", name="Enable").click()
         await_state(page, "following")
-        page.get_by_role("button", name="Arm", exact=True).click()
+        page.get_by_role("button", name="Bench", exact=True).click()
         canvas = page.get_by_role("img", name="The arm", include_hidden=True)
         page.wait_for_function("() => document.querySelector('.stage canvas').width === 64")
         begun = stage.newest().tick
@@ -73,7 +73,7 @@ def test_a_slow_graphics_processor_holds_up_the_picture_and_not_the_page_that_dr
 def test_graphics_that_are_taken_away_are_said_to_be_and_come_back(context: BrowserContext, stage: Stage) -> None:
     with stages.visit(context, stage) as visit:
         page = visit.page
-        page.get_by_role("button", name="Arm", exact=True).click()
+        page.get_by_role("button", name="Bench", exact=True).click()
         canvas = page.locator("canvas[data-tick]")
         canvas.wait_for()
         canvas.evaluate(TAKE)
