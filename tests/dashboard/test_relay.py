@@ -189,6 +189,59 @@ def test_a_page_cannot_ask_for_a_longer_lease(bench: LockStepBench) -> None:
             page.ask(request)
             shared.live(0.01)
             assert board.lease_ms == LEASE_MS
+        shared.live(1.0)
+        page.ask(schema.EnableRequest(PULSE_MS))
+        shared.live(0.01)
+        assert board.lease_ms == PULSE_MS, "but for a shorter one, which is not renewed"
+
+
+PULSE_MS = 160
+
+
+def pulsed(shared: Shared) -> Viewer:
+    """A page that drives and has just asked for a pulse."""
+    page = shared.page()
+    shared.relay.drive(page.client)
+    page.ask(schema.LeadRequest(PULSE_MS))
+    shared.live(0.02, here=page)
+    assert page.answers()[-1].type == schema.LeadReply.TYPE
+    assert motors_on(page)
+    return page
+
+
+def on_ticks(page: Viewer) -> int:
+    return sum(sample.state not in (schema.State.DISABLED, schema.State.FAULT) for sample in page.samples())
+
+
+@pytest.mark.parametrize("speaks", [True, False])
+def test_a_pulse_ends_by_its_own_lease_whether_its_page_speaks_or_not(shared: Shared, speaks: bool) -> None:
+    page = pulsed(shared)
+    shared.live(1.0, here=page if speaks else None)
+    assert 0 < on_ticks(page) <= PULSE_MS
+    assert page.words("refused") == []
+
+
+def test_nothing_that_a_page_asks_makes_a_pulse_longer(shared: Shared) -> None:
+    page = pulsed(shared)
+    for request in (schema.RenewRequest(0), schema.EnableRequest(0), schema.LeadRequest(60_000)):
+        page.ask(request)
+        assert "nothing makes longer" in page.words("refused")[0]["sentence"]
+    shared.live(0.5, here=page)
+    assert on_ticks(page) <= PULSE_MS
+    page.ask(schema.EnableRequest(0))
+    shared.live(1.0, here=page)
+    assert motors_on(page), "what is asked for afterwards is kept on again"
+
+
+def test_a_pulse_that_never_reached_the_board_is_in_nobodys_way() -> None:
+    with FakeBoard(Faults(lose=Counter({schema.LeadRequest.TYPE: 1}))) as board, Shared(board.port) as shared:
+        page = shared.page()
+        shared.relay.drive(page.client)
+        for answers in (0, 1):
+            page.ask(schema.LeadRequest(PULSE_MS), seq=7)
+            shared.live(0.5, here=page)
+            assert len(page.answers()) == answers
+        assert board.lease_ms == PULSE_MS
 
 
 def test_a_board_that_is_silent_and_restarts_is_told_and_speaks_on(bench: LockStepBench, shared: Shared) -> None:

@@ -1,6 +1,7 @@
 """The lease of the motors that run for a page: it goes on while the page speaks and the board sends samples.
 
-Time is that of the line.
+A short one, as for a pulse of a motor, is never renewed: the arm moves no longer than the page has asked for. Time is
+that of the line.
 """
 
 from __future__ import annotations
@@ -32,15 +33,18 @@ class Lease:
 
     def __init__(self) -> None:
         self.page: Client | None = None
+        self.is_short = False
+        self._begun_s = 0.0
         self._confirmed = False  # by the board, that they run
         self._renewed_s = 0.0
 
-    def begin(self, page: Client) -> None:
+    def begin(self, page: Client, is_short: bool) -> None:
         """A page asks the board to start the motors."""
-        self.page, self._confirmed, self._renewed_s = page, False, page.seen_s
+        self.page, self.is_short, self._confirmed = page, is_short, False
+        self._begun_s = self._renewed_s = page.seen_s
 
     def end(self) -> None:
-        self.page = None
+        self.page, self.is_short = None, False
 
     def note_answer(self, page: Client, refused: bool) -> None:
         """The board answers what this page has asked for to start them."""
@@ -57,6 +61,10 @@ class Lease:
     def look(self, now_s: float, heard_s: float) -> Due:
         """The act that is due now; the board's last sample came at `heard_s`."""
         if self.page is None:
+            return Due.NOTHING
+        if self.is_short:
+            if now_s > self._begun_s + LEASE_MS / 1000:  # the board has ended it, or never began
+                self.end()
             return Due.NOTHING
         if now_s > self.page.seen_s + SILENCE_S:
             return Due.STOP

@@ -29,6 +29,7 @@ from greywhale.protocol.transport import Line
 # What changes nothing, and what must always get through.
 _FOR_ALL = {schema.HelloRequest.TYPE, schema.StatusRequest.TYPE, schema.ParamGetRequest.TYPE, schema.StopRequest.TYPE}
 _LEASES = {*STARTS, schema.RenewRequest.TYPE}
+_PULSED = "the motors run for a pulse, which nothing makes longer; ask again when they are off."
 _STATE = 4  # place of the state in a sample's payload
 
 
@@ -269,6 +270,8 @@ class Relay:
             return f"`greywhale {self.members.verb.verb}` uses the board; stop it first, or wait for its end."
         if client.verb is None and self.members.driver is not client:
             return "this page only watches; let it drive first."
+        if self._lease.is_short and frame.type in _LEASES:
+            return _PULSED
         return self._why_no_start(client, frame) if frame.type in STARTS else ""
 
     def _why_no_start(self, client: Client, frame: Frame) -> str:
@@ -292,9 +295,11 @@ class Relay:
     def _forward(self, client: Client, frame: Frame) -> None:
         payload = frame.payload
         if client.verb is None and frame.type in _LEASES and len(payload) == schema.EnableRequest.SIZE:
-            payload = schema.EnableRequest(LEASE_MS).pack()
+            asked_ms = int.from_bytes(payload, "little")
+            is_short = frame.type == schema.LeadRequest.TYPE or 0 < asked_ms < LEASE_MS
+            payload = schema.EnableRequest(min(asked_ms, LEASE_MS) if is_short else LEASE_MS).pack()
             if frame.type in STARTS:
-                self._lease.begin(client)
+                self._lease.begin(client, is_short)
         asked = Asked(frame.type, client, frame.seq)
         if frame.type in STARTS:  # a stop that comes behind it must find it sent
             self._requests.send(asked, payload)

@@ -59,8 +59,8 @@ export class BenchLoop {
   send(data: Uint8Array, flashes = false): void {
     if (!flashes && this.module.call("in_bootloader")) return;
     this.requests.feed(data, ({ type }) => {
-      if (type === EnableRequest.type || type === LeadRequest.type) this.renewing = true;
-      if (type === StopRequest.type) this.renewing = false;
+      if (type === EnableRequest.type) this.renewing = true;
+      if (type === StopRequest.type || type === LeadRequest.type) this.renewing = false; // a lead is a pulse
     });
     this.module.send(data);
   }
