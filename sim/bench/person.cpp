@@ -70,6 +70,35 @@ void Person::bring_along(std::vector<Place> places) {
   bring_next();
 }
 
+double Person::turn(unsigned pot, double each_way) {
+  const bool leader = pot < rest_.leader.size();
+  const Four& rest = leader ? rest_.leader : rest_.follower;
+  std::vector<Place> places;
+  const auto go = [&](const Four& to, double seconds) {
+    places.push_back({leader ? std::optional(to) : std::nullopt, leader ? std::nullopt : std::optional(to),
+                      slices(seconds, slice_)});
+  };
+  for (const double end : kEnds) {
+    Four to = rest;
+    to[pot % to.size()] = end;
+    go(to, each_way);
+    go(to, kPause);
+  }
+  go(rest, each_way);
+  bring_along(std::move(places));
+  return 3.0 * each_way + 2.0 * kPause;
+}
+
+double Person::pose(const Four& angles) {
+  bring_along({{angles, angles, slices(kBring, slice_)}});
+  return kBring;
+}
+
+double Person::hang() {
+  bring_along({{std::nullopt, kHanging, slices(kBring, slice_)}});
+  return kBring;
+}
+
 void Person::step(bool enabled, const Four& follower) {
   paused_ = enabled ? 0 : paused_ + 1;
   if (worked_ && paused_ && paused_ < patience_) return;

@@ -59,6 +59,12 @@ class Person {
   static constexpr double kLetGo = 0.5;       // s from motors off to the hand on the follower
   static constexpr double kBringBack = 1.0;   // s from where the arms are to the first pose
   static constexpr unsigned kAllJoints = 15;  // bits
+  // What a calibration asks of hands. No track ends within a sweep, whose positive end comes first (rad).
+  static constexpr double kDegree = 3.14159265358979323846 / 180.0;
+  static constexpr double kEnds[] = {75.0 * kDegree, -70.0 * kDegree};
+  static constexpr double kEachWay = 1.0, kPause = 0.1;               // s, of a sweep's ways, and at its ends
+  static constexpr double kBring = 1.0;                               // s to a pose
+  static constexpr Four kHanging = {0.0, -80.0 * kDegree, 0.0, 0.0};  // of the follower
 
   // Joints that are not in use (bits) stay at 0, whatever the motion and the hands want.
   Person(Motion motion, double slice, double start = kStart, unsigned in_use = kAllJoints);
@@ -73,6 +79,15 @@ class Person {
 
   // Brings held arms to one place after another; only while the follower is held.
   void bring_along(std::vector<Place> places);
+
+  // What a calibration asks for, while the follower is held; how many seconds it takes. Turns the joint of a
+  // potentiometer (0..3 leader, 4..7 follower) to its positive end, to its negative end, and back.
+  double turn(unsigned pot, double each_way = kEachWay);
+  // Holds both arms in one pose.
+  double pose(const Four& angles);
+  // Lets the follower hang, as for pulses of its motors.
+  double hang();
+  bool has_free_hands() const { return hold && !on_the_way(); }
 
   // Motors that are off for less than so many slices do not end the work: the person waits where they are.
   void set_patience(std::uint64_t slices) { patience_ = slices; }

@@ -199,6 +199,13 @@ void bind_person(nb::module_& m) {
             self.bring_along(std::move(wanted));
           },
           "places"_a)
+      .def("turn", &bench::Person::turn, "pot"_a, "each_way_s"_a = bench::Person::kEachWay,
+           "Turn the joint of a potentiometer (0..3 leader, 4..7 follower) to both ends and back, the positive end "
+           "first; how many seconds that takes.")
+      .def(
+          "pose", [](bench::Person& self, const In& angles) { return self.pose(Copy(angles).array()); }, "angles"_a,
+          "Hold both arms at angles (4,) rad; how many seconds it takes to get there.")
+      .def("hang", &bench::Person::hang, "Let the follower hang; how many seconds that takes.")
       .def("set_patience", &bench::Person::set_patience, "slices"_a,
            "Motors that are off for less than so many slices do not end the work: the person waits where they are.")
       .def(
@@ -220,7 +227,13 @@ void bind_person(nb::module_& m) {
           nb::rv_policy::move)
       .def_prop_ro("plays", &bench::Person::plays)
       .def_prop_ro("finished", &bench::Person::finished, "The motion was played to its end since the motors went on.")
-      .def_prop_ro("on_the_way", &bench::Person::on_the_way, "True while the hands have places to go to.");
+      .def_prop_ro("on_the_way", &bench::Person::on_the_way, "True while the hands have places to go to.")
+      .def_prop_ro_static(
+          "ENDS", [](nb::handle) { return std::tuple(bench::Person::kEnds[0], bench::Person::kEnds[1]); },
+          "The ends of a sweep, rad, the positive one first.")
+      .def_prop_ro_static(
+          "HANGING", [](nb::handle) { return array_of(bench::Person::kHanging); }, nb::rv_policy::move)
+      .def_prop_ro_static("EACH_WAY_S", [](nb::handle) { return bench::Person::kEachWay; });
 }
 
 void bind_drivers(nb::module_& m) {

@@ -156,6 +156,16 @@ EXPORT(press_clutch) void exported_press_clutch(unsigned pressed) { stand->bench
 // The leader is led to the first four numbers, rad.
 EXPORT(lead) void exported_lead() { stand->person.lead({numbers[0], numbers[1], numbers[2], numbers[3]}); }
 
+// What a calibration asks of hands: how many seconds they take, 0 where they are not free for it.
+EXPORT(turn) double exported_turn(unsigned pot) {
+  return stand->person.has_free_hands() ? stand->person.turn(pot) : 0.0;
+}
+// Both arms at the first four numbers, rad. Hands on their way to another pose go to this one.
+EXPORT(pose) double exported_pose() {
+  return stand->person.hold ? stand->person.pose({numbers[0], numbers[1], numbers[2], numbers[3]}) : 0.0;
+}
+EXPORT(hang) double exported_hang() { return stand->person.hold ? stand->person.hang() : 0.0; }
+
 EXPORT(inject) void exported_inject(unsigned pot, unsigned kind) {
   stand->bench.inject(pot, static_cast<arm::PotFault>(kind));
 }

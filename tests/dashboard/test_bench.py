@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from greywhale._native import Person
 from greywhale.base.errors import UserError
 from greywhale.dashboard.answers import Answers
 from greywhale.dashboard.bench import BenchControls
@@ -80,9 +81,30 @@ def test_every_fault_is_staged_by_its_name_and_mended(bench: LockStepBench, cont
     assert bench.bench.clutch_pressed
 
 
+def test_hands_do_what_a_calibration_asks_and_say_how_long_it_takes(
+    bench: LockStepBench, controls: BenchControls
+) -> None:
+    person = bench.bench.leader
+    for wish in ({"turn": 5}, {"pose": [0.1, 0.2, 0.3, 0.4]}, {"hang": True}):
+        takes_s = controls.change(wish)["takes_s"]
+        assert takes_s > 0.5
+        assert person.on_the_way
+        bench.bench.run(takes_s - 0.01)
+        assert person.on_the_way
+        bench.bench.run(0.02)
+        assert not person.on_the_way
+    leader, follower = person.rest
+    assert leader == pytest.approx([0.1, 0.2, 0.3, 0.4])
+    assert follower == pytest.approx(Person.HANGING)
+    controls.change({"pose": [0, 0, 0, 0]})
+    bench.bench.run(1.1)
+
+
 @pytest.mark.parametrize(
     "wish",
     [
+        *({"turn": 8}, {"turn": -1}, {"turn": "0; power off"}, {"pose": [0, 0, 0]}, {"pose": [0, 0, 0, 7]}),
+        *({"pose": [0, 0, 0, "0; power off"]}, {"hang": False}),
         *({}, {"dance": 1}, {"leader": [1, 2, 3]}, {"leader": [1, 2, 3, "4; power off"]}, {"leader": [0, 0, 0, 1e9]}),
         *(
             {"supply": True},

@@ -5,7 +5,7 @@ import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
 import { encodeFrame, FrameDecoder } from "../src/link/frames";
-import { EnableRequest, Fault, HelloReply, Sample, State, TelemetryRequest } from "../src/link/schema";
+import { EnableRequest, Fault, HelloReply, LeadRequest, Sample, State, TelemetryRequest } from "../src/link/schema";
 import type { BenchData } from "../src/sources/in_page/messages";
 import { Clock } from "../src/sources/in_page/clock";
 import { Store } from "../src/parts/storage";
@@ -34,12 +34,13 @@ async function rig() {
     }
     return samples.at(-1)!;
   };
+  const watch = (): void => life.send(encodeFrame(TelemetryRequest.type, 1, TelemetryRequest.pack({ every: 1 })));
   const start = (): void => {
-    life.send(encodeFrame(TelemetryRequest.type, 1, TelemetryRequest.pack({ every: 1 })));
+    watch();
     life.send(encodeFrame(EnableRequest.type, 1, EnableRequest.pack({ lease_ms: 300 })));
   };
   life.start();
-  return { life, module, pass, samples, start, hellos: () => hellos };
+  return { life, module, pass, samples, watch, start, hellos: () => hellos };
 }
 
 test("a clock owes what passed, at any speed, and gives up what is more than a second", () => {
@@ -79,6 +80,44 @@ test("a hand leads, holds, and takes up other motions from where it is; unknown 
   for (const wrong of ["pot-open", "pot-open:elbow", "no-such"]) {
     assert.throws(() => life.change({ fault: wrong }), /no mistake of this bench/);
   }
+});
+
+test("hands turn one joint, hold a pose and let the follower hang, while the motors are off", async () => {
+  const { life, module, pass, watch, start } = await rig();
+  watch();
+  pass(1000);
+  let left = 1000 * life.change({ turn: 6 });
+  const joints = ({ leader, follower }: Sample): number[] => [...leader, ...follower];
+  const first = joints(pass(20));
+  const seen: number[][] = [];
+  for (; left > 0; left -= 20) seen.push(joints(pass(20)).map((angle, pot) => (angle - first[pot]!) / 4096));
+  const turned = seen.map((one) => one[6]!);
+  const [most, least] = [Math.max(...turned), Math.min(...turned)];
+  assert.ok(most - least > 2.4 && turned.indexOf(most) < turned.indexOf(least));
+  assert.ok(seen.every((one) => one.every((angle, pot) => pot === 6 || Math.abs(angle) < 0.03)));
+  life.change({ pose: [0.5, 0.4, -0.3, 0.2] });
+  assert.throws(() => life.change({ turn: 0 }), /one thing after the other/);
+  pass(1100);
+  module.call("look");
+  [0.5, 0.4, -0.3, 0.2].forEach((angle, joint) => assert.ok(Math.abs(module.leader()[joint]! - angle) < 1e-9));
+  const hangs = pass(1000 * life.change({ hang: true }) + 100);
+  assert.ok(Math.abs(hangs.follower[1]! / 4096 + (80 * Math.PI) / 180) < 0.03);
+  life.change({ pose: [0, 0, 0, 0] });
+  pass(1500);
+  start();
+  assert.equal(pass(1500).state, State.is.following);
+  for (const wish of [{ turn: 0 }, { pose: [0, 0, 0, 0] }, { hang: true } as const]) {
+    assert.throws(() => life.change(wish), /only while the motors are off/);
+  }
+});
+
+test("a lead is a pulse, which ends by its own lease", async () => {
+  const { life, pass, watch } = await rig();
+  watch();
+  pass(1000);
+  life.send(encodeFrame(LeadRequest.type, 2, LeadRequest.pack({ lease_ms: 160 })));
+  assert.notEqual(pass(150).state, State.is.disabled);
+  assert.equal(pass(20).state, State.is.disabled);
 });
 
 test("power, supply and emergency stop do what they say", async () => {

@@ -40,9 +40,12 @@ class LeaderPlayer(_native.Person):
 
     def bring_along(self, places: Sequence[Place]) -> None:
         """Bring held arms to one place after another."""
+        self.require_held()
+        self.bring_slices([(leader, follower, round(seconds / self._slice_s)) for leader, follower, seconds in places])
+
+    def require_held(self) -> None:
         if self.hold is None:
             raise UserError("the hands are on the arms only while the motors are off; stop them first.")
-        self.bring_slices([(leader, follower, round(seconds / self._slice_s)) for leader, follower, seconds in places])
 
 
 def _rows(motion: Trajectory, slice_s: float) -> tuple[int, Callable[[int, int], Floats]]:

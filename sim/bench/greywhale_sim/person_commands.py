@@ -6,13 +6,13 @@ from typing import Any
 
 import numpy as np
 
+from greywhale import _native
 from greywhale.arm.parameters import JOINT_NAMES
 from greywhale.base.errors import UserError
 from greywhale_sim.server import Server
 
-ENDS_DEG = (75.0, -70.0)  # of a sweep, the positive one first; no track ends in between
-HANGING_DEG = (0.0, -80.0, 0.0, 0.0)  # of joints 0..3
-EACH_WAY_S, PAUSE_S, BRING_S = 1.5, 0.1, 1.0  # of a sweep, at its ends, and to a pose
+ENDS_DEG = tuple(np.degrees(_native.Person.ENDS))  # of a sweep, the positive one first
+HANGING_DEG = np.degrees(_native.Person.HANGING)  # of joints 0..3
 FARTHEST_DEG, LONGEST_S = 359.0, 60.0  # that a command may ask for
 
 HELP = """\
@@ -27,21 +27,19 @@ clutch press       the clutch's pedal; release
 quit               end the bench; docs/bench.md has more commands"""
 
 
-def turn(server: Server, side: str, joint: str, seconds: str = f"{EACH_WAY_S}") -> dict[str, Any]:
+def turn(server: Server, side: str, joint: str, seconds: str = f"{_native.Person.EACH_WAY_S}") -> dict[str, Any]:
     """Turn one joint to its positive end, to its negative end, and back; each way takes so many seconds."""
     number, each_way = int(joint), float(seconds)
     if side not in ("leader", "follower") or not 0 <= number < len(JOINT_NAMES) or not 0.0 < each_way <= LONGEST_S:
         raise ValueError
     if server.bench.leader.on_the_way:
         raise UserError("the hands are still on their way; wait until they are there.")
-    rest = server.bench.leader.rest[side == "follower"]
-    positive, negative = (np.where(np.arange(len(rest)) == number, np.radians(end), rest) for end in ENDS_DEG)
-    steps = [(positive, each_way), (positive, PAUSE_S), (negative, each_way), (negative, PAUSE_S), (rest, each_way)]
-    follower = side == "follower"
-    server.bench.leader.bring_along([(None if follower else to, to if follower else None, s) for to, s in steps])
+    server.bench.leader.require_held()
+    takes_s = server.bench.leader.turn(number + len(JOINT_NAMES) * (side == "follower"), each_way)
     ends = " and then to ".join(f"{end:g}" for end in ENDS_DEG)
-    said = f"{side} joint {number}, {JOINT_NAMES[number]}, turns to {ends} degrees, and back"
-    return _arriving(server, sum(seconds for _, seconds in steps), said)
+    return _arriving(
+        server, takes_s, f"{side} joint {number}, {JOINT_NAMES[number]}, turns to {ends} degrees, and back"
+    )
 
 
 def hold(server: Server, *degrees: str) -> dict[str, Any]:
@@ -50,14 +48,14 @@ def hold(server: Server, *degrees: str) -> dict[str, Any]:
     if len(angles) not in (1, len(JOINT_NAMES)) or not np.all(np.abs(angles) <= FARTHEST_DEG):
         raise ValueError
     pose = np.radians(np.broadcast_to(angles, len(JOINT_NAMES)))
-    server.bench.leader.bring(pose, pose, BRING_S)
-    return _arriving(server, BRING_S, f"both arms go to {' '.join(degrees)} degrees")
+    server.bench.leader.require_held()
+    return _arriving(server, server.bench.leader.pose(pose), f"both arms go to {' '.join(degrees)} degrees")
 
 
 def hang(server: Server) -> dict[str, Any]:
     """Let the follower hang, as it should when its motors get pulses."""
-    server.bench.leader.bring(None, np.radians(HANGING_DEG), BRING_S)
-    return _arriving(server, BRING_S, "the follower hangs down")
+    server.bench.leader.require_held()
+    return _arriving(server, server.bench.leader.hang(), "the follower hangs down")
 
 
 def explain(server: Server) -> dict[str, Any]:
@@ -66,4 +64,8 @@ def explain(server: Server) -> dict[str, Any]:
 
 
 def _arriving(server: Server, seconds: float, says: str) -> dict[str, Any]:
-    return {"says": f"{says}; {seconds:g} s.", "arrives_s": round(server.bench.time_s + seconds, 6)}
+    return {
+        "says": f"{says}; {seconds:g} s.",
+        "takes_s": round(seconds, 6),
+        "arrives_s": round(server.bench.time_s + seconds, 6),
+    }

@@ -10,6 +10,9 @@ from typing import Any
 from greywhale.base.bench_process import RunningBench
 from greywhale.base.errors import BadUsage, cut
 from greywhale.dashboard.folder import Folder
+from greywhale.protocol.firmware import JOINTS
+
+SIDES = ("leader", "follower")
 
 
 class BenchControls:
@@ -25,11 +28,17 @@ class BenchControls:
         return self._do("controls")
 
     def change(self, wish: dict[str, Any]) -> dict[str, Any]:
-        """Do one thing; what there is to change then, or the bench's answer to a `command`."""
+        """Do one thing; what there is to change then. Of what hands do for a calibration, how long it takes."""
         match wish:
             case {"leader": [_, _, _, _] as angles}:
                 self._do(f"lead {' '.join(_number(angle) for angle in angles)}")
                 return {}
+            case {"turn": int(pot)} if 0 <= pot < 2 * JOINTS:
+                return self._do(f"turn {SIDES[pot // JOINTS]} {pot % JOINTS}")
+            case {"pose": [_, _, _, _] as angles}:
+                return self._do(f"hold {' '.join(_degrees(angle) for angle in angles)}")
+            case {"hang": True}:
+                return self._do("hang")
             case {"motion": "hold"}:
                 self._do(f"lead {' '.join(map(str, self._do('status')['leader']))}")
             case {"motion": str(name)} if name in (one["name"] for one in self.controls()["motions"]):
@@ -53,13 +62,17 @@ class BenchControls:
             case {"speed": rate}:
                 self._do(f"speed {_number(rate)}")
             case _:
-                keys = "leader, motion, fault, power, estop, clutch, supply, load and speed"
+                keys = "leader, turn, pose, hang, motion, fault, power, estop, clutch, supply, load and speed"
                 raise BadUsage(f"{cut(repr(wish))} is nothing that a page does to a bench; it knows {keys}.")
         return self.controls()
 
     def _do(self, text: str) -> dict[str, Any]:
         with self._lock:
             return self._bench.command(text)
+
+
+def _degrees(angle: object) -> str:
+    return repr(round(math.degrees(float(_number(angle))), 6))
 
 
 def _number(value: object) -> str:

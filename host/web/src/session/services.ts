@@ -109,9 +109,17 @@ export type BenchWish =
   | { readonly clutch: boolean }
   | { readonly [size in Size]?: number };
 
+/**
+ * What a calibration asks of a person's hands, as the bench's do it: a joint by its potentiometer turned to both ends and
+ * back, both arms in one pose (rad), the follower hanging.
+ */
+export type HandsWish = { readonly turn: number } | { readonly pose: readonly number[] } | { readonly hang: true };
+
 export interface Bench {
   controls(): Promise<BenchControls>;
   change(wish: BenchWish): Promise<void>;
+  /** Begins to do it; the seconds of the bench's time until it is done. */
+  hands(wish: HandsWish): Promise<number>;
 }
 
 export type Argument = {

@@ -14,6 +14,7 @@ export class HostServices implements Services {
   readonly bench: Bench = {
     controls: () => this.ask("GET", "/bench"),
     change: (wish) => this.ask<unknown>("POST", "/bench", wish).then(() => undefined),
+    hands: async (wish) => (await this.ask<{ takes_s: number }>("POST", "/bench", wish)).takes_s,
   };
 
   readonly jobs: Jobs = {

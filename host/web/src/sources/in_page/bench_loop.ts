@@ -1,6 +1,6 @@
 // The loop of a bench inside the page, tick by tick: what the page sends, what a person wishes, the lease, the hand.
 
-import type { BenchWish, Range, Size } from "../../session/services";
+import type { BenchWish, HandsWish, Range, Size } from "../../session/services";
 import { encodeFrame, FrameDecoder } from "../../link/frames";
 import { EnableRequest, LeadRequest, RenewRequest, StopRequest } from "../../link/schema";
 import type { BenchData, Motion } from "./messages";
@@ -65,8 +65,9 @@ export class BenchLoop {
     this.module.send(data);
   }
 
-  /** Does one thing to the bench, or fails with a sentence and changes nothing. */
-  change(wish: BenchWish): void {
+  /** Does one thing to the bench, or fails with a sentence and changes nothing; the seconds that hands need for it. */
+  change(wish: BenchWish | HandsWish): number {
+    if ("turn" in wish || "pose" in wish || "hang" in wish) return this.hands(wish);
     if ("leader" in wish) this.leadTo(wish.leader);
     else if ("motion" in wish) this.move(wish.motion);
     else if ("fault" in wish) this.break(wish.fault);
@@ -74,6 +75,14 @@ export class BenchLoop {
     else if ("estop" in wish) this.module.call("press_estop", Number(wish.estop));
     else if ("clutch" in wish) this.module.call("press_clutch", Number(wish.clutch));
     else this.size(wish);
+    return 0;
+  }
+
+  private hands(wish: HandsWish): number {
+    const takes_s = "turn" in wish ? this.module.call("turn", wish.turn) : "pose" in wish ? this.module.pose(wish.pose) : this.module.call("hang");
+    if (!takes_s) throw new Error("The hands are on the arms only while the motors are off, and do one thing after the other: stop the motors, or wait a second.");
+    this.motion = null;
+    return takes_s;
   }
 
   private leadTo(angles: readonly number[]): void {

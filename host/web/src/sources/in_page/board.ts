@@ -1,7 +1,7 @@
 // A board inside the page, in a worker of its own, with the bench around it.
 
 import type { Board, BoardListener } from "../../session/board";
-import { SIZES, type BenchControls, type BenchWish, type Bench as BenchActions, type Range, type Size } from "../../session/services";
+import { SIZES, type BenchControls, type BenchWish, type HandsWish, type Bench as BenchActions, type Range, type Size } from "../../session/services";
 import { encodeFrame } from "../../link/frames";
 import { upperFirst } from "../../link/refusal";
 import { StopRequest } from "../../link/schema";
@@ -25,7 +25,7 @@ const UNKEPT = "This browser has no room to keep what the board stores; it ends 
 
 export class PageBoard implements Board, BenchActions, Pick<BoardPort, "flash"> {
   private listener: BoardListener | null = null;
-  private readonly wishes = new Map<number, (error: string | null) => void>();
+  private readonly wishes = new Map<number, (error: string | null, takes_s: number) => void>();
   private wished = 0;
   private readonly sizes: Record<Size, number>;
   private broken: readonly string[] = [];
@@ -93,7 +93,7 @@ export class PageBoard implements Board, BenchActions, Pick<BoardPort, "flash"> 
         }
         break;
       case "done":
-        this.wishes.get(message.id)?.(message.error);
+        this.wishes.get(message.id)?.(message.error, message.takes_s);
         this.wishes.delete(message.id);
         break;
       case "failed":
@@ -103,7 +103,7 @@ export class PageBoard implements Board, BenchActions, Pick<BoardPort, "flash"> 
   }
 
   private failed(sentence: string): void {
-    for (const settle of this.wishes.values()) settle(sentence);
+    for (const settle of this.wishes.values()) settle(sentence, 0);
     this.wishes.clear();
     this.listener?.driver({ you: false, free: false, verb: null });
     this.listener?.link({ open: false, port: "", sentence });
@@ -168,13 +168,23 @@ export class PageBoard implements Board, BenchActions, Pick<BoardPort, "flash"> 
     };
   }
 
-  async change(wish: BenchWish): Promise<void> {
+  /** Does it, or fails with a sentence; how long hands take. */
+  private wish(wish: BenchWish | HandsWish): Promise<number> {
     const id = ++this.wished;
-    const error = await new Promise<string | null>((settle) => {
-      this.wishes.set(id, settle);
+    return new Promise((settle, fail) => {
+      this.wishes.set(id, (error, takes_s) => (error ? fail(new Error(error)) : settle(takes_s)));
       this.tell({ kind: "wish", id, wish });
     });
-    if (error) throw new Error(error);
+  }
+
+  async hands(wish: HandsWish): Promise<number> {
+    const takes_s = await this.wish(wish);
+    this.led = "held";
+    return takes_s;
+  }
+
+  async change(wish: BenchWish): Promise<void> {
+    await this.wish(wish);
     if ("power" in wish && !wish.power) this.listener?.link({ open: true, port: PORT, sentence: UNPOWERED });
     if ("fault" in wish) this.takeFault(wish.fault);
     else if ("leader" in wish) this.led = [...wish.leader];

@@ -1,6 +1,6 @@
 // Messages between the page and the worker with its bench, and the parts of a bench.
 
-import type { ArmDescription, BenchControls, BenchWish, NamedMotion, Range } from "../../session/services";
+import type { ArmDescription, BenchControls, BenchWish, HandsWish, NamedMotion, Range } from "../../session/services";
 
 /** A call of the module: its export's name, and numbers. */
 export type Call = readonly [name: string, ...given: number[]];
@@ -36,7 +36,7 @@ export type ToBench =
   | { kind: "start"; code: ArrayBuffer; data: BenchData; firmware: Uint8Array; eeprom: Uint8Array | null }
   | { kind: "send"; data: Uint8Array; flashes: boolean } // to a bootloader, or frames to the firmware
   | { kind: "reset" } // the board's reset line
-  | { kind: "wish"; id: number; wish: BenchWish }
+  | { kind: "wish"; id: number; wish: BenchWish | HandsWish }
   | { kind: "visible"; on: boolean } // time stands still for a page that nobody sees
   | { kind: "taken"; count: number }; // so many bytes are worked off
 
@@ -45,5 +45,5 @@ export type FromBench =
   | { kind: "bytes"; data: Uint8Array }
   | { kind: "restarted" }
   | { kind: "eeprom"; content: Uint8Array }
-  | { kind: "done"; id: number; error: string | null }
+  | { kind: "done"; id: number; error: string | null; takes_s: number } // until hands are there
   | { kind: "failed"; sentence: string };

@@ -79,6 +79,12 @@ export class BenchModule {
     this.call("lead");
   }
 
+  /** Brings both arms into a pose; the seconds that it takes, 0 where nobody can. */
+  pose(angles: readonly number[]): number {
+    this.numbers().set(angles);
+    return this.call("pose");
+  }
+
   /** The angles of the leader arm, rad. */
   leader(): number[] {
     this.call("look");

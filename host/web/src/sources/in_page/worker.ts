@@ -55,13 +55,14 @@ class Bench {
 
   private change({ id, wish }: Extract<ToBench, { kind: "wish" }>): void {
     let error: string | null = null;
+    let takes_s = 0;
     try {
-      this.loop.change(wish);
+      takes_s = this.loop.change(wish);
     } catch (problem) {
       if (problem instanceof WebAssembly.RuntimeError) return this.fail(problem);
       error = sentenceOf(problem);
     }
-    page.postMessage({ kind: "done", id, error });
+    page.postMessage({ kind: "done", id, error, takes_s });
   }
 
   private turn(): void {
