@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from pathlib import Path
 
 import pytest
@@ -60,9 +61,9 @@ def hold(page: Page, bench: LockStepBench, angle: float) -> None:
 
 def sweep(page: Page, bench: LockStepBench, pot: int) -> None:
     """Turn a joint to both ends, and say that it is done; the page asks for it."""
-    name = f"{('leader', 'follower')[pot // 4]} joint {pot % 4}"
-    expect(page.get_by_role("main")).to_contain_text(f"Now {name}")
-    live(page, bench, bench.command(f"turn {name.replace(' joint', '')} 0.1")["arrives_s"] - bench.bench.time_s)
+    side = ("leader", "follower")[pot // 4]
+    expect(page.locator("h3").first).to_contain_text(f": {side.capitalize()} joint {pot % 4}, ")
+    live(page, bench, bench.command(f"turn {side} {pot % 4} 0.1")["arrives_s"] - bench.bench.time_s)
     press(page, "Done")
 
 
@@ -153,32 +154,42 @@ def test_a_board_is_watched_driven_and_changed(context: BrowserContext, site: Si
 
         press(page, "Calibrate")
         wire(page, bench, "pot-swapped:leader0")
-        press(page, "Begin the sweeps")
+        press(page, "Begin")
+        expect(page.get_by_role("button", name="first pose", exact=True)).to_be_disabled()
+        expect(page.get_by_role("button", name="first pose", exact=True)).to_have_attribute(
+            "title", "First comes: sweep of leader joint 0."
+        )
         sweep(page, bench, 0)
         expect(page.get_by_text("leader potentiometer 1 did: their wires are swapped")).to_be_visible()
         wire(page, bench, "none")
-        press(page, "Go on")
+        press(page, "Again")
         for number in USED_POTS:
             sweep(page, bench, number)
-        expect(page.get_by_text("All potentiometers turn with their joints.")).to_be_visible()
         for pose, angle in (("first pose", 0.0), ("second pose", 1.0), ("first pose again", 0.0), ("third pose", -0.5)):
+            expect(page.locator("h3").first).to_contain_text(f": {pose}")
+            for field in page.get_by_label(re.compile("^Joint ., degrees")).all():
+                field.fill(f"{math.degrees(angle):.4f}")
             hold(page, bench, angle)
-            press(page, f"Take the {pose}")
-            expect(page.get_by_role("main")).to_contain_text(f"{pose.capitalize()} is taken.")
+            press(page, "Take the pose")
+        expect(page.locator("h3").first).to_have_text("Motors")
         bench.command("motor 1 reversed")
         live(page, bench, bench.command("hang")["arrives_s"] - bench.bench.time_s)
+        press(page, "Try the motors")
+        page.get_by_role("alertdialog").get_by_role("button", name="Stop").click()
+        expect(page.get_by_text("The motors were not tried: Stop was pressed")).to_be_visible()
+        press(page, "Try the motors")
+        expect(page.get_by_text("Motor 1 of 2, joint 0, base yaw, gets pulses.")).to_be_visible()
         page.evaluate(HIDE)
-        press(page, "Try motor 1")
-        expect(page.get_by_role("alert")).to_contain_text("The motor of joint 1 was not tried to the end")
+        expect(page.get_by_text("The motor of joint 0 was not tried to the end")).to_be_visible()
         page.evaluate(SHOW)
         bench.command("pins")
-        press(page, "Try motor 1")
-        expect(page.get_by_text("V moved it, the other way round")).to_be_visible()
+        press(page, "Try the motors")
+        expect(page.get_by_text("turned the wrong way, motor_sign is changed")).to_be_visible()
         seen = bench.command("pins")
         assert 0.0 < max(seen["duties"]) <= PULSE_SHARES[-1] + 1 / 400
         assert seen["longest_on_s"] <= LEASE_MS / 1000 + 0.002
-        press(page, "Store")
-        expect(page.get_by_role("main")).to_contain_text("What was found runs and is stored.")
+        press(page, "Go on", "Yes, store it")
+        expect(page.get_by_text("The board is calibrated.")).to_be_visible()
         require_no_barrier(page, DARK_AND_NARROW, views="Port|Calibrate")  # the others are the site's too
 
         press(page, "Parameters")

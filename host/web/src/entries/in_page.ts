@@ -14,6 +14,7 @@ import { ConnectView } from "../views/connect/view";
 import { ControllerView } from "../views/controller/view";
 import { TryCards } from "../views/first_visit/try_cards";
 import type { BenchWish } from "../session/services";
+import { Countdown } from "../views/verbs/countdown";
 import { LiveView } from "../views/live/view";
 import { State } from "../link/schema";
 import { ParametersView } from "../views/parameters/view";
@@ -74,9 +75,11 @@ function showPort({ data, worker, tuner, calibration, firmware, docs }: Parts): 
   worker.terminate();
   const board = new SerialBoard((navigator as { serial?: Serial }).serial, firmware);
   const session = new Session(board);
+  const countdown = new Countdown(session);
+  document.body.append(countdown.element);
   const shell = new Shell(session, [
     new ConnectView(session, board), new LiveView(session), new ArmView(new ArmPicture(session, { arm: async () => data.description })),
-    new ControllerView(session, new PagePredictor(tuner, NOT_YOURS, true), new PageTuner(tuner)), new ParametersView(session), new CalibrateView(session, calibration),
+    new ControllerView(session, new PagePredictor(tuner, NOT_YOURS, true), new PageTuner(tuner)), new ParametersView(session), new CalibrateView(session, calibration, countdown),
   ], ["Plug the board in by USB and connect it in the view Port."]);
   offerOthers(shell, docs);
 }
@@ -87,7 +90,7 @@ function offerOthers(shell: Shell, docs: string | null): void {
   if (docs) shell.offer(el("a", { href: `${docs}index.html` }, "Documentation"));
 }
 
-async function showBench({ code, data, worker, tuner, firmware, docs }: Parts): Promise<void> {
+async function showBench({ code, data, worker, tuner, calibration, firmware, docs }: Parts): Promise<void> {
   const board = new PageBoard(worker, code, data, firmware, browserStore);
   const session = new Session(board);
   const leaderControl = new LeaderControl(board, session);
@@ -102,8 +105,11 @@ async function showBench({ code, data, worker, tuner, firmware, docs }: Parts): 
     shell.show(controller);
     document.getElementById("view")!.focus(); // the button is gone
   });
+  const countdown = new Countdown(session);
+  document.body.append(countdown.element);
   const views = [
-    beside(new ArmView(arm), cards), new LiveView(session), controller, new ParametersView(session), new BenchView(session, board, leaderControl, arm, null, benchFirmware),
+    beside(new ArmView(arm), cards), new LiveView(session), controller, new CalibrateView(session, calibration, countdown, board),
+    new ParametersView(session), new BenchView(session, board, leaderControl, arm, null, benchFirmware),
   ];
   let state: PageState | null = null;
   let problem = "";

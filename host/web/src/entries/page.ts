@@ -5,7 +5,9 @@ import { ArmPicture } from "../views/arm3d/picture";
 import { ArmView } from "../views/arm3d/view";
 import { LeaderControl } from "../views/bench/leader_control";
 import { BenchView } from "../views/bench/view";
+import { CalibrateView } from "../views/calibrate/view";
 import { ControllerView } from "../views/controller/view";
+import { ParametersView } from "../views/parameters/view";
 import { Countdown } from "../views/verbs/countdown";
 import { FilesView } from "../views/files/view";
 import { DoView } from "../views/verbs/view";
@@ -38,7 +40,8 @@ function begin({ token, sentence }: Access): void {
 
 /** Adds what needs a host beside the board. */
 function addServices(shell: Shell, session: Session, services: Services): void {
-  document.body.append(new Countdown(session, services.jobs).element);
+  const countdown = new Countdown(session, services.jobs);
+  document.body.append(countdown.element);
   const arm = new ArmPicture(session, services);
   const verbs = new DoView(session, services);
   const files = new FilesView(session, services, (verb, given) => {
@@ -49,9 +52,19 @@ function addServices(shell: Shell, session: Session, services: Services): void {
     shell.add(view);
   }
   void session.attempt(async () => {
-    if (!(await services.state()).sim) return;
+    const { sim } = await services.state();
+    shell.add(new CalibrateView(session, calibration, countdown, sim ? services.bench : null));
+    shell.add(new ParametersView(session));
+    if (!sim) return;
     const leaderControl = new LeaderControl(services.bench, session);
     arm.leadBy(leaderControl);
     shell.add(new BenchView(session, services.bench, leaderControl, arm, services));
   });
+}
+
+/** The rules of a calibration, a file beside the page. */
+async function calibration(): Promise<ArrayBuffer> {
+  const answer = await fetch(new URL("calibration.wasm", import.meta.url));
+  if (!answer.ok) throw new Error(`calibration.wasm is missing beside this page (${answer.status})`);
+  return answer.arrayBuffer();
 }

@@ -5,10 +5,8 @@ import { LinkError, type Parameter } from "../../link/declared";
 import { upperFirst } from "../../link/refusal";
 import { TABLE } from "../../link/schema";
 import { startCode, type Exports } from "../../parts/web_assembly";
-import { JOINTS } from "../../session/samples";
+import { COUNT14_PER_COUNT, POTS, potParameter, potsOf } from "../../session/pots";
 
-const POTS = 2 * JOINTS;
-const COUNT14_PER_COUNT = 16; // in a count of the converter
 const STEPS_PER_RAD = 1024; // of a led point on the link
 
 /** A potentiometer in a sweep: 1 where its reading grows towards the positive end, and its ends in counts. */
@@ -26,21 +24,6 @@ export type PulseLimits = {
 };
 /** Gives the motor one pulse, `way` 1 or -1; how far each joint went, in rad. */
 export type Pulse = (volts: number, way: number) => Promise<readonly number[]>;
-
-/** A potentiometer's parameters by its number: leader 0..3, follower 4..7. */
-function of(pot: number, key: string): Parameter {
-  return TABLE.named(`${pot < JOINTS ? "leader" : "follower"}${pot % JOINTS}.${key}`);
-}
-
-/** The joints that a set has in use. */
-export function jointsInUse(raw: readonly number[]): number[] {
-  return [0, 1, 2, 3].filter((joint) => raw[of(JOINTS + joint, "scale").index] !== 0 && raw[of(joint, "scale").index] !== 0);
-}
-
-/** The potentiometers of these joints, arm by arm. */
-export function potsOf(joints: readonly number[]): number[] {
-  return [...joints, ...joints.map((joint) => JOINTS + joint)];
-}
 
 export class Rules {
   constructor(private readonly exports: Exports) {
@@ -74,7 +57,7 @@ export class Rules {
 
   /** The converter's readings, rows of eight, from rows of a sample's angles and the set that runs. */
   counts(angles: readonly number[], raw: readonly number[]): readonly number[] {
-    const all = (key: string): number[] => Array.from({ length: POTS }, (_, pot) => raw[of(pot, key).index]!);
+    const all = (key: "zero" | "scale"): number[] => POTS.map((pot) => raw[potParameter(pot, key).index]!);
     return this.checked("counts", all("scale"), all("zero"), angles);
   }
 
@@ -91,11 +74,14 @@ export class Rules {
 
   /** The calibration from a sweep of each potentiometer and two known poses; fails where they contradict each other. */
   solve(sweeps: readonly (Sweep | null)[], first: Pose, second: Pose, joints: readonly number[]): Calibration {
-    const each = (key: keyof Sweep): number[] => sweeps.map((sweep) => sweep?.[key] ?? 0);
-    const poses = [first.angles, first.counts, second.angles, second.counts];
-    const found = this.checked("solve", inUse(joints), each("direction"), each("low"), each("high"), ...poses);
-    const limits = [0, 1, 2, 3].map((joint) => found.slice(2 * (POTS + joint), 2 * (POTS + joint + 1)));
-    return { zero: found.slice(0, POTS), scale: found.slice(POTS, 2 * POTS), limits };
+    return calibration(this.checked("solve", ...shown(sweeps, joints), first.angles, first.counts, second.angles, second.counts));
+  }
+
+  /** The same from one known pose and one in which both arms agree, for tracks of this length in rad. */
+  match(sweeps: readonly (Sweep | null)[], first: Pose, same: Pose, track: number, joints: readonly number[]): Calibration {
+    const known = shown(sweeps, joints);
+    const { zero, scale } = calibration(this.checked("solve", ...known, first.angles, first.counts, track));
+    return calibration(this.checked("match", ...known, zero, scale, first.angles, first.counts, same.counts));
   }
 
   /** Fails where a potentiometer reads otherwise in the same pose. */
@@ -117,8 +103,8 @@ export class Rules {
       values.set(name, raw!);
     };
     for (const pot of potsOf(joints)) {
-      set(of(pot, "zero"), COUNT14_PER_COUNT * zero[pot]!, false);
-      set(of(pot, "scale"), scale[pot]! / COUNT14_PER_COUNT, false);
+      set(potParameter(pot, "zero"), COUNT14_PER_COUNT * zero[pot]!, false);
+      set(potParameter(pot, "scale"), scale[pot]! / COUNT14_PER_COUNT, false);
     }
     for (const joint of joints) {
       ["limit_min", "limit_max"].forEach((key, end) => set(TABLE.named(`joint${joint}.${key}`), limits[joint]![end]!, true));
@@ -161,6 +147,18 @@ export class Rules {
   readyAsked(): string {
     return this.ask("ready_asked").words;
   }
+}
+
+/** What people have shown of the joints that are in use. */
+function shown(sweeps: readonly (Sweep | null)[], joints: readonly number[]): number[][] {
+  const each = (key: keyof Sweep): number[] => sweeps.map((sweep) => sweep?.[key] ?? 0);
+  return [inUse(joints), each("direction"), each("low"), each("high")];
+}
+
+function calibration(found: readonly number[]): Calibration {
+  const pots = POTS.length;
+  const limits = [0, 1, 2, 3].map((joint) => found.slice(2 * (pots + joint), 2 * (pots + joint + 1)));
+  return { zero: found.slice(0, pots), scale: found.slice(pots, 2 * pots), limits };
 }
 
 function inUse(joints: readonly number[]): number[] {

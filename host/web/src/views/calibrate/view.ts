@@ -1,222 +1,386 @@
-// From potentiometers mounted anyhow to angles, by hand: a sweep of each joint, four poses, and pulses of the
-// motors; mistakes of the wiring by name.
+// From potentiometers mounted anyhow to angles, by hand, one step after the other: a sweep of each joint, four poses,
+// pulses of the motors; mistakes of the wiring by name. Nothing is stored before a person has seen what was found.
 
+import { parameterFile } from "../../files/parameter_file";
 import { fixed } from "../../files/words";
 import { LinkError } from "../../link/declared";
-import { potName, upperFirst } from "../../link/refusal";
-import { State, TABLE } from "../../link/schema";
-import { button, el, setText, tableHead } from "../../parts/dom";
-import type { View } from "../view";
-import { JOINTS, traceOf } from "../../session/samples";
+import { upperFirst } from "../../link/refusal";
+import { TABLE } from "../../link/schema";
+import { button, download, el, select, setText } from "../../parts/dom";
+import { grey } from "../../parts/grey";
+import { sentenceOf } from "../../parts/sentence";
+import { FULL_SCALE, COUNT14_PER_COUNT, potParameter, potsOf } from "../../session/pots";
+import { JOINT_NAMES, JOINTS } from "../../session/samples";
+import type { Bench, HandsWish } from "../../session/services";
 import type { Session } from "../../session/session";
+import { PotBars } from "../pots/bars";
+import type { Countdown } from "../verbs/countdown";
+import type { View } from "../view";
+import { Hands } from "./hands";
 import { Trial } from "./pulses";
-import { jointsInUse, potsOf, Rules, type Calibration, type Motor, type Pose, type Sweep } from "./rules";
-import { motorsAsked, POSES, POSES_ASKED, sweepAsked } from "./words";
+import { foundTables, motorInWords } from "./result";
+import { Rules } from "./rules";
+import { Walk, type Found, type Step } from "./walk";
+import { AGAIN, FIRST, jointTitle, motorsAsked, poseAsked, poseInWords, SECOND, stepTitle, THIRD } from "./words";
 
-const POTS = Array.from({ length: 2 * JOINTS }, (_, pot) => pot);
-const HELD_TICKS = 500; // that a pose is looked at
-const SECOND_RAD = 1;
-const [FIRST, SECOND, AGAIN, THIRD] = [0, 1, 2, 3] as const;
+const DEGREE = Math.PI / 180;
+const SECOND_DEG = [60, 50, -45, 40]; // far enough from 0 at every joint
+const THIRD_RAD = [-35, -20, 30, -40].map((angle) => DEGREE * angle); // of the bench's hands
+const OFF = "Calibrate with the motors off; press Stop first.";
+const NO_RULES = "This page came without the rules of a calibration; run `make setup` and reload it, or `greywhale calibrate` in a terminal.";
+
+/** A button of a step, and the reason why it cannot be pressed now. */
+type Action = { readonly button: HTMLButtonElement; readonly whyNot: () => string; readonly usual: string };
 
 export class CalibrateView implements View {
   readonly name = "Calibrate";
   readonly element: HTMLElement;
-  private readonly sweeps: (Sweep | null)[] = POTS.map(() => null);
-  private turning: { readonly pot: number; readonly from: number } | null = null; // since that sample
-  private poses: (Pose | null)[] = POSES.map(() => null);
   private rules: Rules | null = null;
-  private readonly motors = new Map<number, Motor>(); // that have turned since something was stored
-  private readonly ready = el("p");
-  private readonly turned = el("p", { attrs: { role: "status" } });
-  private readonly next = button("Begin the sweeps", () => this.act((rules) => this.goOn(rules)), { class: "primary" });
-  private readonly asked = el("p", { attrs: { role: "status" } }, "The motors stay off. Turn one joint of one arm after the other.");
-  private readonly said = el("p", { attrs: { role: "status" } });
-  private readonly rows = POTS.map((pot) => ({
-    cells: ["", "", ""].map((text) => el("td", {}, text)),
-    sweep: button("Begin", () => this.act((rules) => this.begin(rules, pot)), { title: `Sweep the joint of the ${potName(pot)}` }),
-  }));
+  private walk: Walk | null = null;
+  private angles: number[][] = [[0, 0, 0, 0], SECOND_DEG]; // of the known poses, degrees
+  private known = true; // the second pose's angles are
+  private mends = false; // a sweep with a mistake is to be done again
+  private busy = ""; // what is under way, in a sentence
+  private stored: Found | null = null; // to be undone
+  private actions: Action[] = [];
+  private readonly hands: Hands | null;
+  private readonly bars: PotBars;
+  private readonly list = el("div", { class: "steps", attrs: { role: "group", "aria-label": "Steps" } });
+  private readonly title = el("h3");
+  private readonly asked = el("p", { attrs: { role: "status" } });
+  private readonly picture = el("div", { class: "joint-picture", hidden: true, attrs: { role: "img" } });
+  private readonly body = el("div", { class: "step-body" });
+  private readonly problem = el("p", { class: "problem", attrs: { role: "alert" } });
+  private readonly row = el("div", { class: "row" });
+  private readonly reason = el("p", { class: "reason", attrs: { role: "status" } });
 
-  /** `code` brings the rules of a calibration, once they are asked for. */
-  constructor(private readonly session: Session, private readonly code: () => Promise<ArrayBuffer>) {
-    const head = tableHead("potentiometer", "reads", "least", "most", "sweep");
-    const rows = this.rows.map(({ cells, sweep }, pot) => el("tr", {},
-      el("th", { attrs: { scope: "row" } }, upperFirst(potName(pot)).replace(" potentiometer", "")), ...cells, el("td", {}, sweep)));
-    this.element = el("div", { class: "editor" },
-      el("section", { class: "card" },
-        el("h2", {}, "1 Sweeps"), this.asked, el("div", { class: "row" }, this.next),
-        el("table", {}, head, el("tbody", {}, ...rows)),
-        el("p", { class: "quiet" }, "Counts of 1023. Each sweep shows whether the right potentiometer turns, and it alone.")),
-      el("section", { class: "card connect" },
-        ...POSES.flatMap((_, place) => this.pose(place)),
-        el("h2", {}, "6 Motors"), this.ready,
-        el("div", { class: "row" }, ...[0, 1, 2, 3].map((joint) => button(`Try motor ${joint}`, () => this.act((rules) => this.tryMotor(rules, joint))))), this.turned,
-        el("h2", {}, "7 Store"),
-        el("div", { class: "row" }, button("Store", () => this.act((rules) => this.store(rules)), { class: "primary", title: "Run and store what was found" })),
-        this.said,
-        el("p", { class: "quiet" }, "Motors that were not tried keep their directions. greywhale calibrate also compares the arms without a protractor.")));
-  }
-
-  private pose(place: number): HTMLElement[] {
-    const title = POSES[place]!;
-    const inputs = place > SECOND ? [] : Array.from({ length: JOINTS }, (_, joint) =>
-      el("input", { type: "number", value: String(place * SECOND_RAD), attrs: { step: "any", "aria-label": `${title}, joint ${joint}, rad` } }));
-    const take = button(`Take the ${title.toLowerCase()}`, () => this.act(async (rules) => {
-      const raw = await this.running();
-      const angles = place === AGAIN ? this.poses[FIRST]?.angles ?? [] : inputs.map(({ value }) => Number(value));
-      this.take(rules, place, { angles, counts: this.still(rules, raw) }, jointsInUse(raw));
-    }));
-    return [el("h2", {}, `${place + 2} ${title}`), el("p", {}, POSES_ASKED[place]!), el("div", { class: "row" }, ...inputs, take)];
-  }
-
-  private act(act: (rules: Rules) => Promise<void>): void {
-    void this.session.attempt(async () => act(await this.load()));
-  }
-
-  private async load(): Promise<Rules> {
-    if (!this.rules) {
-      const rules = await Rules.load(await this.code());
-      setText(this.ready, motorsAsked(rules));
-      this.rules = rules;
-    }
-    return this.rules;
+  /** `code` brings the rules of a calibration, once they are asked for; `bench` has hands, where the arm is simulated. */
+  constructor(
+    private readonly session: Session, private readonly code: () => Promise<ArrayBuffer>,
+    private readonly countdown: Pick<Countdown, "before">, bench: Bench | null = null,
+  ) {
+    this.hands = bench && new Hands(session, bench);
+    this.bars = new PotBars(session);
+    this.element = el("div", { class: "editor calibrate" },
+      el("section", { class: "card" }, el("h2", {}, "Calibrate"), this.list,
+        this.title, this.asked, this.body, this.problem, this.row, this.reason, this.picture),
+      el("section", { class: "card" }, el("h2", {}, "Potentiometers"), this.bars.element,
+        el("p", { class: "quiet" }, `Counts of ${FULL_SCALE}, and degrees where the board is calibrated.`)));
+    session.changed.on(() => this.refresh());
+    this.showBeginning();
   }
 
   enter(): void {
-    this.act(async () => undefined);
+    void this.attempt(async () => void await this.session.readParameters());
   }
 
-  /** The set that runs, by which the counts are known; the motors must be off. */
-  private async running(): Promise<readonly number[]> {
-    if (this.session.motorsOn || this.session.state === State.is.boot) throw new LinkError("Calibrate with the motors off; press Stop first.");
-    return this.session.readParameters();
-  }
-
-  /** Ends the sweep that is under way, and begins the next. */
-  private async goOn(rules: Rules): Promise<void> {
-    const raw = await this.running();
-    const mistake = this.turning ? this.judge(rules, this.turning, raw) : "";
-    const pot = potsOf(jointsInUse(raw)).find((one) => !this.sweeps[one]);
-    if (!mistake && pot !== undefined) return this.begin(rules, pot);
-    this.turning = null;
-    this.next.hidden = !mistake;
-    this.ask(mistake ? `${mistake} Mend it, then comes this sweep again.` : "All potentiometers turn with their joints.", mistake !== "");
-  }
-
-  private async begin(rules: Rules, pot: number): Promise<void> {
-    if (!potsOf(jointsInUse(await this.running())).includes(pot)) throw new LinkError(`Joint ${pot % JOINTS} is not in use: a scale of it is 0.`);
-    this.turning = { pot, from: this.session.samples.end };
-    this.sweeps[pot] = null;
-    this.next.hidden = false;
-    this.ask(sweepAsked(rules, pot));
-  }
-
-  private ask(what: string, mistake = false): void {
-    setText(this.asked, what);
-    this.asked.classList.toggle("problem", mistake);
-    this.show();
-  }
-
-  /** Keeps a sweep, or says what is wrong with it. */
-  private judge(rules: Rules, { pot, from }: { readonly pot: number; readonly from: number }, raw: readonly number[]): string {
-    this.requireOff(from);
-    const { mistake, ...sweep } = rules.sweep(rules.counts(this.angles(from), raw), pot);
-    if (!mistake) this.sweeps[pot] = sweep;
-    return mistake;
-  }
-
-  /** With motors on, samples have the reference in the place of the leader. */
-  private requireOff(from: number): void {
-    const { samples } = this.session;
-    for (let number = Math.max(from, samples.first); number < samples.end; number++) {
-      const state = samples.state[number % samples.capacity];
-      if (state === State.is.soft_start || state === State.is.following) throw new LinkError("The motors were on meanwhile; do it again with the motors off.");
-    }
-  }
-
-  /** The angles in the samples from a number on, rows of eight. */
-  private angles(from: number): number[] {
-    const { samples } = this.session;
-    const begin = Math.max(from, samples.first);
-    if (begin >= samples.end) throw new LinkError("No sample has come yet; is the board silent?");
-    return Array.from({ length: samples.end - begin }, (_, row) =>
-      POTS.map((pot) => samples.count(begin + row, traceOf(pot < JOINTS ? "leader" : "follower", pot % JOINTS)))).flat();
-  }
-
-  /** The counts of arms that were held still. */
-  private still(rules: Rules, raw: readonly number[]): readonly number[] {
-    const { samples } = this.session;
-    if (samples.end - samples.first < HELD_TICKS) throw new LinkError("There are too few samples yet; hold the pose for half a second.");
-    this.requireOff(samples.end - HELD_TICKS);
-    return rules.held(rules.counts(this.angles(samples.end - HELD_TICKS), raw));
-  }
-
-  /** Keeps a pose unless it contradicts what was before; those after it are to be taken again. */
-  private take(rules: Rules, place: number, pose: Pose, joints: readonly number[]): void {
-    const poses = this.poses.map((kept, one) => (one < place ? kept : one === place ? pose : null));
-    const [first, , again] = poses;
-    if (first && again) rules.requireNoSlip(first, again);
-    const apart = this.solved(rules, poses, joints)?.apart;
-    this.poses = poses;
-    setText(this.said, `${POSES[place]} is taken.${apart ? ` The arms are ${fixed(1000 * Math.max(...apart), 0)} mrad apart in the third pose.` : ""}`);
-  }
-
-  /** The result of sweeps and poses, as soon as there are enough of them. */
-  private solved(rules: Rules, poses: readonly (Pose | null)[], joints: readonly number[]): { found: Calibration; apart: readonly number[] | null } | null {
-    const { [FIRST]: first, [SECOND]: second, [THIRD]: third } = poses;
-    if (!first || !second || potsOf(joints).some((pot) => !this.sweeps[pot])) return null;
-    const found = rules.solve(this.sweeps, first, second, joints);
-    return { found, apart: third ? rules.apartIn(found, third, joints) : null };
-  }
-
-  /** The set that runs, and the same with potentiometers and limits as found. */
-  private async calibrated(rules: Rules): Promise<{ readonly before: readonly number[]; readonly after: number[] }> {
-    const before = await this.running();
-    const joints = jointsInUse(before);
-    const solved = this.solved(rules, this.poses, joints);
-    if (!solved || this.poses.includes(null)) throw new LinkError("Take all sweeps and the four poses first.");
-    const changes = rules.changesOf(solved.found, joints);
-    return { before, after: TABLE.parameters.map(({ name, index }) => changes.get(name) ?? before[index]!) };
-  }
-
-  private async tryMotor(rules: Rules, joint: number): Promise<void> {
-    const { before, after } = await this.calibrated(rules);
-    if (!jointsInUse(before).includes(joint)) throw new LinkError(`Joint ${joint} is not in use: a scale of it is 0.`);
-    const buttons = [...this.element.querySelectorAll("button")];
-    for (const one of buttons) one.disabled = true;
-    this.motors.delete(joint);
-    setText(this.turned, `Motor ${joint} gets pulses.`);
-    try {
-      this.motors.set(joint, await new Trial(this.session, rules, before, after, joint).run());
-    } finally {
-      for (const one of buttons) one.disabled = false;
-      const sentences = [...this.motors.values()].map(({ joint: one, volts, sign }) =>
-        `Motor ${one}: ${fixed(volts, 1)} V moved it${sign < 0 ? ", the other way round; Store puts that right" : ""}.`);
-      setText(this.turned, [...sentences, rules.remarks([...this.motors.values()], before[TABLE.named("supply_mv").index]! / 1000)].join(" "));
-    }
-  }
-
-  private async store(rules: Rules): Promise<void> {
-    const { after } = await this.calibrated(rules);
-    for (const { joint, sign } of this.motors.values()) after[TABLE.named(`joint${joint}.motor_sign`).index]! *= sign;
-    await this.session.apply(after);
-    await this.session.store();
-    this.motors.clear();
-    setText(this.turned, "");
-    setText(this.said, "What was found runs and is stored.");
-  }
-
-  private show(): void {
-    setText(this.next, this.turning ? "Done" : "Go on");
-    this.rows.forEach(({ cells, sweep }, pot) => {
-      const { low, high } = this.sweeps[pot] ?? { low: NaN, high: NaN };
-      [low, high].forEach((value, end) => setText(cells[end + 1]!, Number.isNaN(value) ? "–" : value.toFixed(1)));
-      setText(sweep, this.turning?.pot === pot || this.sweeps[pot] ? "Again" : "Begin");
-    });
+  leave(): void {
+    this.hands?.letGo();
   }
 
   frame(): void {
-    const { rules, session: { samples, parameters } } = this;
-    if (!rules || !parameters || !samples.end) return;
-    rules.counts(this.angles(samples.end - 1), parameters).forEach((count, pot) => setText(this.rows[pot]!.cells[0]!, count.toFixed(1)));
+    this.bars.frame();
+    this.refresh();
   }
+
+  // --- what every step has ------------------------------------------------------------------------------------------
+
+  /** The reason why nothing can be done now, in a sentence; empty where something can. */
+  private whyNot(): string {
+    const { link, whyNotChange, motorsOn } = this.session;
+    if (!link.open) return link.sentence || "No board is there yet.";
+    return this.busy || whyNotChange || (motorsOn ? OFF : "");
+  }
+
+  private refresh(): void {
+    for (const { button: one, whyNot, usual } of this.actions) grey(one, whyNot(), usual);
+    const reason = this.whyNot();
+    setText(this.reason, reason);
+    this.reason.hidden = !reason;
+  }
+
+  /** Shows a step; a keyboard stays where it was, at the button that goes on. */
+  private showPanel(title: string, asked: string, body: readonly HTMLElement[], actions: readonly Action[]): void {
+    const focused = this.row.contains(document.activeElement) || this.list.contains(document.activeElement);
+    setText(this.title, title);
+    setText(this.asked, asked);
+    this.body.replaceChildren(...body);
+    this.row.replaceChildren(...actions.map(({ button: one }) => one));
+    this.actions = [...actions, ...this.stepButtons()];
+    this.refresh();
+    if (focused) actions[0]!.button.focus();
+  }
+
+  private action(label: string, act: () => Promise<void>, usual: string, primary = false, whyNot = (): string => this.whyNot()): Action {
+    return { button: button(label, () => void this.attempt(act), primary ? { class: "primary" } : {}), whyNot, usual };
+  }
+
+  /** Runs what a person asked for; an error stands in the step. */
+  private async attempt(act: () => Promise<void>): Promise<void> {
+    setText(this.problem, "");
+    try {
+      await act();
+    } catch (error) {
+      setText(this.problem, sentenceOf(error));
+    }
+    this.refresh();
+  }
+
+  /** Does something during which nothing else can be done. */
+  private async alone(what: string, act: () => Promise<void>): Promise<void> {
+    this.busy = what;
+    this.refresh();
+    try {
+      await act();
+    } finally {
+      this.busy = "";
+    }
+  }
+
+  private stepButtons(): Action[] {
+    const { walk } = this;
+    this.list.hidden = !walk;
+    const groups = new Map<string, HTMLElement>();
+    const actions = (walk?.steps ?? []).map((step, at) => {
+      const title = stepTitle(step);
+      const [group, short] = stepInGroup(step);
+      const one = this.action(short, async () => this.go(at), `Go to this step: ${title}`, false, () => this.whyNot() || walk!.whyNot(at));
+      one.button.setAttribute("aria-label", walk!.isDone(step) ? `${title}, done` : title);
+      one.button.dataset["done"] = String(walk!.isDone(step));
+      if (at === walk!.at) one.button.setAttribute("aria-current", "step");
+      if (!groups.has(group)) groups.set(group, el("div", {}, el("span", { class: "quiet" }, group)));
+      groups.get(group)!.append(one.button);
+      return one;
+    });
+    this.list.replaceChildren(...groups.values());
+    return actions;
+  }
+
+  // --- the way ------------------------------------------------------------------------------------------------------
+
+  private showBeginning(said = ""): void {
+    this.walk = null;
+    this.picture.hidden = true;
+    this.bars.ask([]);
+    const scale = potParameter(0, "scale");
+    const track = el("input", { type: "number", value: fixed(scale.initial * scale.lsb * FULL_SCALE * COUNT14_PER_COUNT / DEGREE, 0),
+      attrs: { step: "any", "aria-label": "The tracks' length, degrees" } });
+    const length = el("label", { class: "row", hidden: true }, "The tracks' length, degrees", track);
+    const second = select("Second pose", [["known", "I can set angles that I know"], ["same", "I have no protractor: any pose, the same for both arms"]],
+      (choice) => { length.hidden = choice !== "same"; });
+    this.showPanel("By hand, with the motors off",
+      said || "Turn each joint of both arms to its ends, hold four poses, then each motor gets some weak pulses: five minutes. Nothing is stored before you agree.", [
+        el("label", { class: "row" }, "Second pose", second), length,
+        el("p", { class: "quiet" }, this.hands ? "This arm is simulated, and its hands can do each step for you. First break something in Bench, such as a reversed potentiometer or motor: it is found here and put right."
+          : "Only joints in use are asked for; `greywhale calibrate --joints` in a terminal changes which those are."),
+      ], [
+        this.action("Begin", () => this.begin(second.value === "same" ? DEGREE * Number(track.value) : null), "Begin with the first sweep", true),
+        ...(this.stored ? [this.action("Undo", () => this.undo(), "Run and store the parameters from before this calibration")] : []),
+      ]);
+  }
+
+  private async begin(track: number | null): Promise<void> {
+    await this.alone("The rules are on their way.", async () => {
+      this.rules ??= await Rules.load(await this.code().catch(() => { throw new LinkError(NO_RULES); }));
+      this.walk = new Walk(this.session, this.rules, await this.session.readParameters(), track);
+      this.known = track === null;
+    });
+    this.go(0);
+  }
+
+  private go(at: number): void {
+    this.walk!.go(at);
+    this.showStep();
+  }
+
+  private showStep(): void {
+    this.hands?.letGo();
+    this.mends = false;
+    const { step, joints } = this.walk!;
+    this.picture.hidden = step.kind !== "sweep";
+    this.bars.ask(step.kind === "sweep" ? [step.pot] : step.kind === "pose" ? potsOf(joints) : []);
+    if (step.kind === "sweep") this.showSweep(step.pot);
+    else if (step.kind === "pose") this.showPose(step.place);
+    else if (step.kind === "motors") this.showMotors();
+    else void this.attempt(() => this.showFound());
+  }
+
+  /** "Back", and the same step again. */
+  private ways(): Action[] {
+    const { at } = this.walk!;
+    return [
+      this.action("Again", async () => this.go(at), "Begin this step anew"),
+      this.action("Back", async () => (at ? this.go(at - 1) : this.showBeginning()), "The step before"),
+    ];
+  }
+
+  /** What the bench's hands do in a step, and then the step is done. */
+  private byHands(label: string, wish: () => HandsWish, done: () => Promise<void>, usual: string): Action[] {
+    const { hands, walk } = this;
+    return hands ? [this.action(label, async () => {
+      if (this.mends) this.go(walk!.at);
+      const going = hands.do(wish());
+      setText(this.asked, "The bench's hands do it.");
+      if (await going) await this.attempt(done);
+    }, usual)] : [];
+  }
+
+  private place(step: Step): string {
+    const alike = this.walk!.steps.filter(({ kind }) => kind === step.kind);
+    return `${alike.indexOf(step) + 1} of ${alike.length}`;
+  }
+
+  private showSweep(pot: number): void {
+    const { walk, rules } = this;
+    const pots = potsOf(walk!.joints);
+    const wrong = pots[(pots.indexOf(pot) + 1) % pots.length]!;
+    const joint = String(pot % JOINTS);
+    this.picture.dataset["joint"] = joint;
+    this.picture.setAttribute("aria-label", `The positive way of joint ${joint}`);
+    const done = (): Promise<void> => this.endSweep(pot);
+    this.showPanel(`Sweep ${this.place(walk!.step)}: ${jointTitle(pot)}`, upperFirst(rules!.turnAsked(pot % JOINTS)), [], [
+      this.action("Done", done, "The joint was turned to both ends", true),
+      ...this.ways(),
+      this.action("Later", async () => {
+        walk!.later();
+        this.showStep();
+      }, "Put this sweep behind the others"),
+      ...this.byHands("Let the bench's hands do it", () => ({ turn: pot }), done, "They turn this joint to both ends"),
+      ...this.byHands("Let them turn a wrong joint", () => ({ turn: wrong }), done, "To see how a mistake is told"),
+    ]);
+  }
+
+  /** Ends a sweep, or begins it again where a mistake was mended. */
+  private async endSweep(pot: number): Promise<void> {
+    const walk = this.walk!;
+    if (this.mends) return this.go(walk.at);
+    let mistake = "";
+    await this.alone("The sweep is looked at.", async () => { mistake = await walk.takeSweep(pot); });
+    if (!mistake) return this.goOn();
+    this.hands?.letGo();
+    this.mends = true;
+    setText(this.problem, mistake);
+    setText(this.asked, "Mend it, or turn the right joint; then comes this sweep again.");
+    const [goOn, again] = this.actions;
+    setText(goOn!.button, "Again");
+    again!.button.hidden = true;
+  }
+
+  private goOn(): void {
+    this.walk!.next();
+    this.showStep();
+  }
+
+  private showPose(place: number): void {
+    const walk = this.walk!;
+    const asksAngles = place === FIRST || (place === SECOND && this.known);
+    const given = (pose: number): number[] => this.angles[pose]!.map((angle) => DEGREE * angle);
+    const inputs = asksAngles ? walk.joints.map((joint) => {
+      const input = el("input", { type: "number", value: String(this.angles[place]![joint]), attrs: { step: "any", "aria-label": `Joint ${joint}, degrees` } });
+      input.addEventListener("change", () => {
+        this.angles = this.angles.map((pose, one) => (one === place ? pose.map((angle, of) => (of === joint ? Number(input.value) : angle)) : pose));
+      });
+      return el("label", { class: "factor" }, `${joint} ${JOINT_NAMES[joint]!}, degrees`, input);
+    }) : [];
+    const done = async (): Promise<void> => {
+      await this.alone("The pose is looked at.", () => walk.takePose(place, given(Math.min(place, SECOND))));
+      this.goOn();
+    };
+    const held = (): number[] => (place === THIRD ? THIRD_RAD : given(place === AGAIN ? FIRST : place));
+    this.showPanel(`Pose ${this.place(walk.step)}: ${stepTitle(walk.step)}`, poseAsked(place, poseInWords(given(FIRST), walk.joints), this.known),
+      inputs.length ? [el("div", { class: "factors" }, ...inputs)] : [], [
+        this.action("Take the pose", done, "Both arms are held still in it", true),
+        this.ways()[1]!,
+        ...this.byHands("Let the bench's hands do it", () => ({ pose: held() }), done, "They hold both arms in this pose"),
+      ]);
+  }
+
+  // --- motors, and the end ------------------------------------------------------------------------------------------
+
+  private showMotors(): void {
+    const walk = this.walk!;
+    const supply = this.session.parameters![TABLE.named("supply_mv").index]! / 1000;
+    const tried = [...walk.motors.values()];
+    const results = walk.joints.map((joint) => el("li", {}, el("span", {}, `${joint} ${JOINT_NAMES[joint]!}`), el("span", {}, motorInWords(walk.motors.get(joint)))));
+    const pulses = (): Promise<void> => this.tryMotors();
+    this.showPanel("Motors", motorsAsked(this.rules!, supply), [
+      el("ul", { class: "differences", attrs: { "aria-label": "Motors" } }, ...results),
+      el("p", { class: "problem" }, this.rules!.remarks(tried, supply)),
+    ], walk.isDone(walk.step) ? [
+      this.action("Go on", async () => this.goOn(), "See what was found", true),
+      this.action("Try them again", async () => {
+        walk.motors.clear();
+        walk.motorsLeft = false;
+        this.showMotors();
+      }, "All motors get pulses again"),
+      this.ways()[1]!,
+    ] : [
+      this.action(tried.length ? "Try the other motors" : "Try the motors", pulses, "Each gets short weak pulses, after a countdown", true),
+      this.action("Leave the motors as they are", async () => {
+        walk.motorsLeft = true;
+        this.goOn();
+      }, "Their directions stay; nothing moves"),
+      this.ways()[1]!,
+      ...this.byHands("Let the bench's hands let it hang", () => ({ hang: true }), pulses, "The follower hangs, and each motor gets short weak pulses"),
+    ]);
+  }
+
+  private async tryMotors(): Promise<void> {
+    const { walk, session, rules } = this;
+    if (!await this.countdown.before("The arm is about to get pulses of its motors")) throw new LinkError("The motors were not tried: Stop was pressed, or the page was hidden.");
+    try {
+      await this.alone("The motors get pulses; Stop ends them.", async () => {
+        for (const joint of walk!.joints.filter((one) => !walk!.motors.has(one))) {
+          setText(this.asked, `Motor ${walk!.joints.indexOf(joint) + 1} of ${walk!.joints.length}, joint ${joint}, ${JOINT_NAMES[joint]!}, gets pulses.`);
+          const { before, after } = await walk!.found();
+          const stops = session.stopsAsked;
+          walk!.motors.set(joint, await new Trial(session, rules!, before, after, joint).run());
+          if (session.stopsAsked > stops + 1) throw new LinkError("Stop was pressed; the other motors were not tried."); // one stop is the trial's own
+        }
+      });
+    } finally {
+      if (this.walk === walk) this.showMotors();
+    }
+  }
+
+  private async showFound(): Promise<void> {
+    const walk = this.walk!;
+    const found = await walk.found();
+    this.showPanel("Store this?", "What was found neither runs nor is stored yet.", [foundTables(found, walk.joints, walk.motors)], [
+      this.action("Yes, store it", () => this.store(found), "Run it, and write it to the board's memory", true),
+      this.action("No", async () => this.showBeginning("Nothing was stored."), "Keep what runs"),
+      this.ways()[1]!,
+    ]);
+  }
+
+  private async store(found: Found): Promise<void> {
+    await this.alone("The board stores it.", async () => {
+      await this.session.apply(found.after);
+      await this.session.store();
+    });
+    this.stored = found;
+    this.showBeginning();
+    this.showPanel("Stored", "The board is calibrated. An arm file needs these potentiometers too: greywhale arm match arm.toml", [], [
+      this.action("Undo", () => this.undo(), "Run and store the parameters from before"),
+      this.action("Save the parameters from before", async () => download("before-calibration.toml", parameterFile(found.before), "application/toml"),
+        "As a file that greywhale params restore takes", false, () => ""),
+      this.action("Calibrate again", async () => this.showBeginning(), "Begin anew"),
+    ]);
+  }
+
+  private async undo(): Promise<void> {
+    const { before } = this.stored!;
+    await this.alone("The board stores what it had.", async () => {
+      await this.session.apply(before);
+      await this.session.store();
+    });
+    this.stored = null;
+    this.showBeginning("The parameters from before run and are stored again.");
+  }
+}
+
+/** The group of a step, and its name there. */
+function stepInGroup(step: Step): readonly [group: string, short: string] {
+  if (step.kind === "sweep") return [`${step.pot < JOINTS ? "Leader" : "Follower"} sweeps`, String(step.pot % JOINTS)];
+  return step.kind === "pose" ? ["Poses", String(step.place + 1)] : ["Then", upperFirst(step.kind)];
 }

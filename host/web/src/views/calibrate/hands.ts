@@ -1,0 +1,31 @@
+// The hands of a simulated bench, where there is one, do what a step asks of a person, and say when they are there.
+
+import type { Bench, HandsWish } from "../../session/services";
+import type { Session } from "../../session/session";
+
+const LOOK_MS = 50;
+const REST_TICKS = 700; // after the hands are there: a pose is looked at for 500, and samples are on their way
+
+export class Hands {
+  private asked = 0; // the number of the last wish
+
+  constructor(private readonly session: Session, private readonly bench: Bench) {}
+
+  /** Lets them do it; false where somebody has gone on without them. */
+  async do(wish: HandsWish): Promise<boolean> {
+    const number = ++this.asked;
+    const { samples } = this.session;
+    const takes = 1000 * await this.bench.hands(wish) + REST_TICKS;
+    const begin = samples.lastTime;
+    while (samples.lastTime < begin + takes) {
+      if (number !== this.asked || !this.session.link.open) return false;
+      await new Promise((settle) => setTimeout(settle, LOOK_MS));
+    }
+    return number === this.asked;
+  }
+
+  /** Nobody waits for them any more. */
+  letGo(): void {
+    this.asked++;
+  }
+}
