@@ -76,7 +76,11 @@ OWN_TIME = f"""
 
 
 class Stage:
-    """A context: server and board. `page_address` is what a person would open."""
+    """A context: server and board. `page_address` is what a person would open, but with `view` first: to draw the arm
+    of Start costs more than all else on the page.
+    """
+
+    view = "live"
 
     def __init__(self, folder: Path, *options: str) -> None:
         """`options` are the bench's."""
@@ -104,7 +108,7 @@ class Stage:
 
     @property
     def page_address(self) -> str:
-        return self.access.address()
+        return f"{self.access.address()}&view={self.view}"
 
     def stand_still(self) -> int:
         """Let time stand still until a stop comes; the tick at which it stands."""

@@ -6,7 +6,7 @@ import { fragmentOf, stateOf, type PageState } from "../src/entries/link_to_stat
 import type { BenchControls } from "../src/session/services";
 import { TABLE } from "../src/link/schema";
 
-const VIEWS = ["Arm", "Live", "Controller"];
+const VIEWS = ["Start", "Live", "Controller"];
 const CONTROLS: BenchControls = {
   leader: { minimum: [-2, -2, -2, -2], maximum: [2, 2, 2, 2] },
   faults: [
@@ -30,8 +30,8 @@ test("a state comes back from its fragment, every parameter to the count", () =>
     };
     assert.deepEqual(read(fragmentOf(state)), state);
   }
-  const plain = { view: "Arm", joint: 0, sizes: [], acts: [], raw: DEFAULTS };
-  assert.equal(fragmentOf(plain), "view=arm&joint=0");
+  const plain = { view: "Start", joint: 0, sizes: [], acts: [], raw: DEFAULTS };
+  assert.equal(fragmentOf(plain), "view=start&joint=0");
   assert.deepEqual(read("joint=0"), plain);
 });
 

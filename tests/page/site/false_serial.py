@@ -87,6 +87,6 @@ class Cable:
 def connected(context: BrowserContext, site: Site, bench: LockStepBench) -> Iterator[tuple[Page, Cable]]:
     """A page for the board at the port, which is not open yet."""
     cable = Cable(bench)
-    with stages.visit(context, replace(site, said="?board=port"), SCRIPT) as visit:
+    with stages.visit(context, replace(site, said="?board=port#view=port"), SCRIPT) as visit:
         visit.page.expose_function("boardPort", cable.carry)
         yield visit.page, cable

@@ -63,7 +63,9 @@ def opened(view: str) -> pytest.MarkDecorator:
 
 
 def test_a_visitor_sees_an_arm_that_follows_and_what_needs_a_host_is_not_there(visited: Page) -> None:
-    expect(visited.locator("nav button")).to_have_text(["Arm", "Live", "Controller", "Calibrate", "Parameters", "Bench"])
+    expect(visited.locator("nav button")).to_have_text(
+        ["Start", "Live", "Controller", "Parameters", "Calibrate", "Bench"]
+    )
     expect(visited.get_by_text("an Arduino Mega and an arm, simulated in this page")).to_be_visible()
     require_things_to_try(visited)
     visited.get_by_role("button", name="Live").click()
@@ -95,12 +97,12 @@ def require_things_to_try(visited: Page) -> None:
     await_state(visited, "following")
     visited.get_by_role("button", name="Let it reach on").click()
     expect(visited.get_by_role("button", name="Pull the shoulder")).to_be_visible()
-    visited.get_by_role("button", name="Open the controllers").click()
+    visited.get_by_role("button", name="Let it tune").click()
     expect(visited.get_by_text("Control surface")).to_be_visible()
     expect(visited.get_by_text("This is the arm as the page begins with it")).to_be_visible()
     visited.locator(".predict[data-rms]").wait_for()
     expect(visited.get_by_text("Against a file")).to_have_count(0)
-    visited.get_by_role("button", name="Arm", exact=True).click()
+    visited.get_by_role("button", name="Start", exact=True).click()
     expect(said).to_have_count(3)
     for more in said.get_by_role("link").all():
         page, _, anchor = (more.get_attribute("href") or "").removeprefix("docs/").partition("#")
@@ -187,7 +189,7 @@ def test_it_opens_without_a_network_after_the_first_visit_and_a_new_build_shows_
         page.reload()
         expect(page).to_have_title("anew")
         await_state(page, "following")
-        page.get_by_role("button", name="Arm", exact=True).click()  # not looked at while there was a network
+        page.get_by_role("button", name="Start", exact=True).click()  # not looked at while there was a network
         page.locator("canvas[data-tick]").wait_for()
 
 

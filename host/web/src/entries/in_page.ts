@@ -4,33 +4,21 @@
 
 import "../page.css";
 import { fragmentOf, stateOf, type PageState } from "./link_to_state";
-import { ArmPicture } from "../views/arm3d/picture";
-import { ArmView } from "../views/arm3d/view";
-import { LeaderControl } from "../views/bench/leader_control";
-import { BenchView } from "../views/bench/view";
-import { CalibrateView } from "../views/calibrate/view";
-import { FirmwareCard } from "../views/connect/firmware_card";
-import { ConnectView } from "../views/connect/view";
-import { ControllerView } from "../views/controller/view";
-import { TryCards } from "../views/first_visit/try_cards";
 import type { BenchWish } from "../session/services";
-import { Countdown } from "../views/verbs/countdown";
-import { LiveView } from "../views/live/view";
 import { State } from "../link/schema";
-import { ParametersView } from "../views/parameters/view";
 import { button, el, select } from "../parts/dom";
 import { sentenceOf } from "../parts/sentence";
 import { browserStore } from "../parts/storage";
 import { startTheme } from "../parts/theme";
-import { beside } from "../views/view";
 import type { NamedText } from "../parts/named_text";
 import { Session } from "../session/session";
-import { Shell } from "../views/shell";
+import type { Shell } from "../views/shell";
 import { PageBoard } from "../sources/in_page/board";
 import type { BenchData } from "../sources/in_page/messages";
 import { PagePredictor } from "../sources/in_page/predictor";
 import { PageTuner, type TunerParts } from "../sources/in_page/tuner";
 import { SerialBoard } from "../sources/serial/board";
+import { Views } from "./views";
 
 /** The parts that the page is made of. */
 export type Parts = {
@@ -62,6 +50,10 @@ function atPort(): boolean {
   return new URLSearchParams(location.search).get("board") === "port";
 }
 
+function fragment(): URLSearchParams {
+  return new URLSearchParams(location.hash.slice(1));
+}
+
 /** The board that the page shows. Another one begins anew, so that nothing of the one before is taken for its own. */
 function choice(): HTMLElement {
   const box = select("Board", [["", "Bench in this page"], ["port", "Board at a port"]], (board) => {
@@ -73,15 +65,13 @@ function choice(): HTMLElement {
 
 function showPort({ data, worker, tuner, calibration, firmware, docs }: Parts): void {
   worker.terminate();
-  const board = new SerialBoard((navigator as { serial?: Serial }).serial, firmware);
-  const session = new Session(board);
-  const countdown = new Countdown(session);
-  document.body.append(countdown.element);
-  const shell = new Shell(session, [
-    new ConnectView(session, board), new LiveView(session), new ArmView(new ArmPicture(session, { arm: async () => data.description })),
-    new ControllerView(session, new PagePredictor(tuner, NOT_YOURS, true), new PageTuner(tuner)), new ParametersView(session), new CalibrateView(session, calibration, countdown),
-  ], ["Plug the board in by USB and connect it in the view Port."]);
-  offerOthers(shell, docs);
+  const port = new SerialBoard((navigator as { serial?: Serial }).serial, firmware);
+  const session = new Session(port);
+  const views = new Views({
+    session, arm: { arm: async () => data.description }, services: null, bench: null, flashed: null, port,
+    predictor: new PagePredictor(tuner, NOT_YOURS, true), tuner: new PageTuner(tuner), calibration, docs,
+  });
+  offerOthers(views.open(["Plug the board in by USB and connect it in the view Port."], fragment().get("view")), docs);
 }
 
 /** Other boards, and what there is to read. */
@@ -93,35 +83,22 @@ function offerOthers(shell: Shell, docs: string | null): void {
 async function showBench({ code, data, worker, tuner, calibration, firmware, docs }: Parts): Promise<void> {
   const board = new PageBoard(worker, code, data, firmware, browserStore);
   const session = new Session(board);
-  const leaderControl = new LeaderControl(board, session);
-  const arm = new ArmPicture(session, { arm: async () => data.description });
-  arm.leadBy(leaderControl);
-  const controller = new ControllerView(session, new PagePredictor(tuner, THE_BENCHS), new PageTuner(tuner));
-  const benchFirmware = new FirmwareCard(
-    session, board, "The board runs the very image that a real Mega gets. Write it anew through its bootloader, or one of your own.",
-    (act) => void session.attempt(act),
-  );
-  const cards = new TryCards(session, board, leaderControl, docs, () => {
-    shell.show(controller);
-    document.getElementById("view")!.focus(); // the button is gone
+  const views = new Views({
+    session, arm: { arm: async () => data.description }, services: null, bench: board, flashed: board, port: null,
+    predictor: new PagePredictor(tuner, THE_BENCHS), tuner: new PageTuner(tuner), calibration, docs,
   });
-  const countdown = new Countdown(session);
-  document.body.append(countdown.element);
-  const views = [
-    beside(new ArmView(arm), cards), new LiveView(session), controller, new CalibrateView(session, calibration, countdown, board),
-    new ParametersView(session), new BenchView(session, board, leaderControl, arm, null, benchFirmware),
-  ];
+  const { controller } = views;
   let state: PageState | null = null;
   let problem = "";
   try {
-    state = stateOf(location.hash.slice(1), views.map(({ name }) => name), await board.controls());
+    state = stateOf(location.hash.slice(1), views.all.map(({ name }) => name), await board.controls());
   } catch (error) {
     problem = sentenceOf(error);
   }
   if (state) controller.showJoint(state.joint);
-  const shell = new Shell(session, views, [
+  const shell = views.open([
     "The firmware of a real board and a simulated arm run inside this page; they need a browser with WebAssembly. A board at a port needs none: choose it in the list Board.",
-  ], views.find(({ name }) => name === state?.view));
+  ], state?.view ?? null);
   const copy = button("Copy link", () => void session.attempt(async () => copyLink(session, {
     view: shell.shown, joint: controller.shownJoint, ...board.condition(session.samples.newest("leader")), raw: await session.readParameters(),
   })), { title: "An address that opens this page as it is now", disabled: true });

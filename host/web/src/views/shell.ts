@@ -30,9 +30,10 @@ export class Shell {
   private readonly tabs = new Map<View, HTMLButtonElement>();
   private front: View;
 
-  /** `remedy` says what to do where no board is there; `front` is the view to begin with. */
+  /** `remedy` says what to do where no board is there; `front` is the view to begin with, `shows` hears of each one. */
   constructor(
-    private readonly session: Session, views: readonly View[], remedy: readonly (Node | string)[], front: View = views[0]!,
+    private readonly session: Session, views: readonly View[], remedy: readonly (Node | string)[], front: View,
+    private readonly shows: (view: View) => void,
   ) {
     this.front = front;
     this.control.append(this.let, el("span", { class: "wide" }, " of the arm"));
@@ -60,8 +61,7 @@ export class Shell {
     drawPictures(() => this.picture());
   }
 
-  /** Adds a view behind the others, as for what only some hosts have. */
-  add(view: View): void {
+  private add(view: View): void {
     const tab = button(view.name, () => this.show(view), { attrs: { "aria-controls": "view" } });
     this.tabs.set(view, tab);
     this.nav.append(tab);
@@ -86,6 +86,7 @@ export class Shell {
     }
     this.main.replaceChildren(view.element);
     this.main.setAttribute("aria-label", view.name);
+    this.shows(view);
     view.enter?.();
     this.refresh();
   }

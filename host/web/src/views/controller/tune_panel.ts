@@ -15,7 +15,7 @@ const PROMISE = "What it finds takes the place of the edited controllers: Apply 
 
 export class TunePanel {
   readonly element: HTMLElement;
-  private readonly start = button("Tune", () => void this.tune(), { class: "primary" });
+  private readonly start = button("Tune", () => void this.begin(), { class: "primary" });
   private readonly end = button("Stop the search", () => this.tuner.stop(), { hidden: true });
   private readonly words = el("p", { attrs: { role: "status" } });
   private readonly bar = el("progress", { hidden: true, attrs: { max: "1", "aria-label": "Progress of the search" } });
@@ -47,7 +47,10 @@ export class TunePanel {
     this.draw();
   }
 
-  private async tune(): Promise<void> {
+  /** Searches, unless a search is under way. */
+  async begin(): Promise<void> {
+    if (this.start.disabled) return;
+    this.element.scrollIntoView({ block: "nearest" });
     const [before, model] = [this.edited(), this.model()];
     if (!before || !model) {
       setText(this.words, before ? "The models are not read yet; try again." : "The board would refuse these controllers; mend them first.");

@@ -25,6 +25,7 @@ export class ControllerView implements View {
   private running: Four | null = null; // as they were taken last
   shownJoint = 0;
   private busy = false;
+  private models: Promise<unknown> = Promise.resolve();
   private compared: { name: string; joints: Four } | null = null;
   private readonly pair = new Pair(() => void this.act(() => this.swap()));
   private readonly errorSets: SetsEditor;
@@ -128,7 +129,14 @@ export class ControllerView implements View {
       this.take();
       if (this.services) await this.listFiles(this.services);
     });
-    void this.session.attempt(() => this.predict.readModels());
+    this.models = this.session.attempt(() => this.predict.readModels());
+  }
+
+  /** Begins a search as the button Tune does, once all that it needs is read; the view is in front. */
+  async letTune(): Promise<void> {
+    await this.session.readParameters();
+    await this.models;
+    void this.tune.begin();
   }
 
   private async listFiles(services: Pick<Services, "state">): Promise<void> {

@@ -40,9 +40,9 @@ const BREAK: Words = {
 };
 const TUNE: Words = {
   title: "Let it tune",
-  hint: "How hard a motor pulls is decided by fuzzy sets. Drag them while the arm moves, or press Tune below them.",
-  act: "Open the controllers",
-  back: "Open the controllers",
+  hint: "How hard a motor pulls is decided by fuzzy sets. A search finds better ones; you can also drag them while the arm moves.",
+  act: "Let it tune",
+  back: "Let it tune",
   happened: "Tune tries 500 sets of controllers on a simulation of this arm, and keeps those that follow a hand more closely without hunting. What it found runs once you press Apply.",
   more: ["in-the-browser.html#let-it-tune", "Let it tune"],
 };
@@ -83,16 +83,16 @@ export class TryCards {
   readonly element = el("aside", { class: "side", attrs: { "aria-label": "Three things to try" } });
   private readonly pull: Card;
 
-  /** `docs` is the folder of the documentation, null for none; `tune` shows where sets are tuned. */
+  /** `docs` is the folder of the documentation, null for none; `tune` shows where sets are tuned, and begins. */
   constructor(
     private readonly session: Session, private readonly bench: Bench, private readonly leaderControl: LeaderControl,
-    docs: string | null, tune: () => void,
+    docs: string | null, tune: () => Promise<void>,
   ) {
     const card = (words: Words, act: (done: boolean) => Promise<void>): Card =>
       new Card(words, docs, (done) => session.attempt(() => act(done)));
     this.pull = card(PULL, (pull) => (pull ? this.pullShoulder() : this.reach()));
     const wire = card(BREAK, (cut) => (cut ? bench.change({ fault: WIRE }) : this.mend()));
-    const sets = card(TUNE, async () => tune());
+    const sets = card(TUNE, tune);
     this.element.append(this.pull.element, wire.element, sets.element);
   }
 
