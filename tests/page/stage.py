@@ -71,7 +71,7 @@ ENDED = UserError("the bench has ended.")
 OWN_TIME = f"""
   const wait = setTimeout;
   requestAnimationFrame = (draw) => wait(draw, {FRAME_MS}, performance.now());
-  setTimeout = (act, ms, ...given) => wait(act, ms < 500 ? ms : {PATIENCE_MS} / 4, ...given);
+  setTimeout = (act, ms = 0, ...given) => wait(act, ms < 500 ? ms : {PATIENCE_MS} / 4, ...given);
 """
 
 
