@@ -71,7 +71,7 @@ def _board_use(verb: str, command: click.Command) -> BoardUse:
 
 
 def _argument(verb: str, parameter: click.Parameter, labels: Mapping[str, str], first: bool) -> ArgumentFacts:
-    words = words_of(verb, parameter.name or "")
+    words, kind = words_of(verb, parameter.name or ""), _kind(verb, parameter)
     choices = list(map(str, parameter.type.choices)) if isinstance(parameter.type, click.Choice) else []
     span = parameter.type if isinstance(parameter.type, click.IntRange | click.FloatRange) else None
     said = (parameter.help or "") if isinstance(parameter, click.Option) else ""
@@ -81,7 +81,8 @@ def _argument(verb: str, parameter: click.Parameter, labels: Mapping[str, str], 
         "label": words.label,
         "unit": words.unit,
         "first": first or parameter.required,
-        "kind": _kind(verb, parameter),  # type: ignore[typeddict-item] # one of them
+        "kind": kind,  # type: ignore[typeddict-item] # one of them
+        "shape": (parameter.metavar or "") if kind == "text" else "",
         "files": list(words.kinds),
         "choices": choices,
         "least": None if span is None else span.min,

@@ -22,9 +22,9 @@ def questions(answers: object, folder: Folder) -> list[Heading]:
 def in_a_file(verb: VerbFacts, given: Mapping[str, Any], folder: Folder) -> dict[str, Any]:
     """The arguments of a verb, where a page's answers have become a file of the folder that the verb reads."""
     name = next((one["name"] for one in verb["arguments"] if one["kind"] == "answers"), None)
-    if name is None or not isinstance(given.get(name), Mapping):
+    if name is None or isinstance(given.get(name), str):
         return dict(given)
-    form = _form(given[name], folder)
+    form = _form(given.get(name, {}), folder)  # without any, all is as usual
     form.require_sound()
     out = given.get("out")
     stem = PurePath(out if isinstance(out, str) and out else "arm.toml").with_suffix("")

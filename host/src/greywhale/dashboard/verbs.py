@@ -26,6 +26,7 @@ class ArgumentFacts(TypedDict):
     first: bool  # it matters first; the others stand under "More"
     # Answers: those to the questions of `arm new`.
     kind: Literal["flag", "number", "choice", "file", "text", "answers"]
+    shape: str  # of a text: J:MIN:MAX; "" for any
     files: list[str]  # kinds of the folder's files that it takes, none where it names a new one
     choices: list[str]
     least: float | None  # of a number

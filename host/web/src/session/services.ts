@@ -131,6 +131,8 @@ export type Argument = {
   /** True if it matters first. */
   readonly first: boolean;
   readonly kind: "flag" | "number" | "choice" | "file" | "text" | "answers";
+  /** The shape of a text, such as J:MIN:MAX; "" for any. */
+  readonly shape: string;
   /** The kinds of files that it takes; none where it names a new one. */
   readonly files: readonly string[];
   readonly least: number | null;

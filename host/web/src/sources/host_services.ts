@@ -87,7 +87,10 @@ export class HostServices implements Services {
   private async request(method: Method, path: string, body?: object | Blob): Promise<Response> {
     const answer = await fetch(path, {
       method,
-      headers: { "X-Greywhale-Token": this.token, "X-Greywhale-Page": this.page(), "Content-Type": "application/json" },
+      headers: {
+        "X-Greywhale-Token": this.token, "X-Greywhale-Page": this.page(),
+        "Content-Type": body instanceof Blob ? "application/octet-stream" : "application/json",
+      },
       ...(body ? { body: body instanceof Blob ? body : JSON.stringify(body) } : {}),
     });
     if (answer.ok) return answer;

@@ -14,12 +14,16 @@ const TITLES: Readonly<Record<string, string>> = {
   parameters: "Backups of parameters", firmware: "Firmware", picture: "Pictures", report: "Reports",
 };
 
+/** Pictures that are shown here, by the end of the name. */
+const IMAGES: Readonly<Record<string, string>> = { png: "image/png", svg: "image/svg+xml" };
+
 export class FileList {
   readonly element: HTMLElement;
   private readonly groups = el("div", { class: "files-list" });
   private readonly folder = el("code");
   private readonly hint = el("p", { class: "quiet" });
   private readonly actions = el("div", { class: "file-actions", hidden: true, attrs: { role: "group", "aria-label": "The chosen file" } });
+  private readonly picture = el("img", { hidden: true });
   private readonly asked = el("div", { attrs: { role: "status" } });
   private readonly rows = new Map<string, HTMLButtonElement>();
   private verbs: readonly Verb[] = [];
@@ -38,7 +42,7 @@ export class FileList {
     } } });
     this.element = el("section", { class: "card" }, el("h2", {}, "Files"),
       el("p", {}, "Recordings, models and all other files are in ", this.folder, "."),
-      this.hint, this.actions, this.asked, this.groups,
+      this.hint, this.actions, this.asked, this.picture, this.groups,
       el("label", { class: "file bring" }, el("span", {}, "Bring files here, or drop them on this list"), input));
     this.takeDrops();
   }
@@ -92,7 +96,9 @@ export class FileList {
     this.asked.replaceChildren();
     this.actions.hidden = !file;
     this.mark();
+    this.picture.hidden = true;
     if (!file) return;
+    this.attempt(() => this.showPicture(file));
     this.actions.replaceChildren(
       el("h3", {}, file.name),
       ...this.uses(file),
@@ -107,6 +113,17 @@ export class FileList {
       if (!first || !(first.files.includes(kind) || first.kind === kind)) return [];
       return [button(title, () => this.open(verb, { [first.name]: first.many ? [name] : name }), { title: `Opens the form of ${verb}` })];
     });
+  }
+
+  private async showPicture(file: NamedFile): Promise<void> {
+    const type = IMAGES[file.name.split(".").at(-1)!];
+    if (!type) return;
+    const content = await this.services.files.fetch(file.name);
+    if (this.chosen !== file) return; // another was chosen meanwhile
+    URL.revokeObjectURL(this.picture.src);
+    this.picture.src = URL.createObjectURL(new Blob([content], { type }));
+    this.picture.alt = file.name;
+    this.picture.hidden = false;
   }
 
   private async download({ name }: NamedFile): Promise<void> {

@@ -26,7 +26,20 @@ export function makeField(argument: Argument, state: HostState): Field {
   if (argument.kind === "file" && argument.files.length) {
     return argument.many ? new FileBoxes(argument, fitting(argument, state)) : new FileChoice(argument, state);
   }
-  return new Line(argument);
+  const line = new Line(argument);
+  const free = freeName(argument, state);
+  if (free) line.set(free);
+  return line;
+}
+
+/** The next free name like that of a new file, where that is taken; "" where it is free. */
+function freeName({ kind, default: usual }: Argument, { files }: HostState): string {
+  const taken = new Set(files.map(({ name }) => name));
+  if (kind !== "file" || typeof usual !== "string" || !taken.has(usual)) return "";
+  const [, stem = "", end = ""] = /^(.*?)(\.[^.]*)?$/.exec(usual) ?? [];
+  let number = 2;
+  while (taken.has(`${stem}-${number}${end}`)) number++;
+  return `${stem}-${number}${end}`;
 }
 
 /** The folder's files that an argument takes, the newest first. */
@@ -105,7 +118,7 @@ class Line extends Labelled {
     super(argument);
     this.target.name = argument.name;
     if (argument.kind === "number") this.target.inputMode = "decimal";
-    if (argument.default !== null && argument.default !== undefined) this.target.placeholder = String(argument.default);
+    this.target.placeholder = String(argument.default ?? argument.shape);
     this.target.required = argument.required;
     this.lay(this.target, ...(argument.many ? [el("p", { class: "quiet" }, "Several with commas between.")] : []));
   }
@@ -141,8 +154,8 @@ class Choice extends Labelled {
   constructor(argument: Argument, offers: readonly Offer[], ...more: HTMLElement[]) {
     super(argument);
     this.target.name = argument.name;
-    const usual = argument.default === null || argument.default === undefined ? "" : `: ${String(argument.default)}`;
-    this.target.append(el("option", { value: "" }, argument.required ? "choose ..." : `as usual${usual}`));
+    const usual = `as usual${argument.default === null ? "" : `: ${String(argument.default)}`}`;
+    this.target.append(el("option", { value: "" }, argument.required ? "choose ..." : usual));
     for (const { value, text, group } of offers) {
       if (group && this.target.lastElementChild?.getAttribute("label") !== group) {
         this.target.append(el("optgroup", { attrs: { label: group } }));
