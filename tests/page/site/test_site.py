@@ -30,6 +30,7 @@ STOP_AT_ONCE = """new MutationObserver((_, watch) => {
   watch.disconnect();
   stop.click();
 }).observe(document, { childList: true, subtree: true })"""
+RECORDING = "time_s,leader_0,leader_1,leader_2,leader_3\n0,0.5,0.4,0,0\n60,0.5,0.4,0,0\n"
 ONLY_KEPT = """(build) => {
   caches.keys().then((names) => { window.kept = names.join(); });
   return window.kept?.lastIndexOf("greywhale") === 0 && window.kept.endsWith(build);
@@ -79,6 +80,13 @@ def test_a_visitor_sees_an_arm_that_follows_and_what_needs_a_host_is_not_there(v
     expect(visited.get_by_role("button", name="Hold still")).to_be_visible()
     expect(visited.get_by_label("Speed of time, ×")).to_be_visible()
     expect(visited.get_by_label("Recorded motion")).to_have_count(0)
+    visited.get_by_label("A recording (CSV)").set_input_files(
+        {"name": "hand.csv", "mimeType": "text/csv", "buffer": RECORDING.encode()}
+    )
+    visited.get_by_role("button", name="Play the recording").click()
+    expect(visited.get_by_label("Leader, base yaw, rad")).to_have_value("0.5")
+    visited.get_by_role("button", name="Reach here and there").click()
+    expect(visited.get_by_role("button", name="Play the recording")).to_be_visible()
     visited.keyboard.press("Space")
     await_state(visited, "disabled")
 

@@ -22,6 +22,7 @@ export class ArmPicture {
   private readonly canvas = el("canvas", { attrs: { role: "img", "aria-label": "The arm: follower solid, leader as a ghost" }, hidden: true, title: GAUGES });
   private readonly words = el("p", { class: "quiet" }, "Loading the arm.");
   private readonly mark = el("p", { class: "mark", hidden: true });
+  private readonly sides: HTMLElement;
   private readonly stage: HTMLElement;
   private flat: FlatArm | null = null;
   private scene: ArmScene | null = null;
@@ -31,7 +32,8 @@ export class ArmPicture {
   /** `services` bring the arm. */
   constructor(private readonly session: Session, private readonly services: Pick<Services, "arm">) {
     const sides = PRESET_NAMES.map((preset) => button(upperFirst(preset), () => this.scene?.look(preset), { title: "Look from there" }));
-    this.stage = el("div", { class: "stage" }, this.canvas, this.mark, el("div", { class: "sides" }, ...sides));
+    this.sides = el("div", { class: "sides", hidden: true }, ...sides);
+    this.stage = el("div", { class: "stage" }, this.canvas, this.mark, this.sides);
     this.element = el("section", { class: "card arm", attrs: { "aria-label": "The arm" } }, this.stage, this.words);
     themeChanged.on(() => this.scene?.paint(colours(), isDark()));
     new ResizeObserver(() => this.resize()).observe(this.stage);
@@ -82,7 +84,7 @@ export class ArmPicture {
 
   /** Hides the canvas, and shows the lines in its place; or the other way round. */
   private hide(hidden: boolean): void {
-    this.canvas.hidden = hidden;
+    this.canvas.hidden = this.sides.hidden = hidden;
     this.flat?.element.toggleAttribute("hidden", !hidden);
   }
 

@@ -61,7 +61,7 @@ export class ArmScene {
    */
   static async on(canvas: HTMLCanvasElement, arm: ArmDescription): Promise<ArmScene> {
     const context = contextOf(canvas);
-    if (!context) throw new Error("This browser cannot draw in three dimensions; turn WebGL on. All other views work without it.");
+    if (!context) throw new Error("This browser cannot draw in three dimensions; turn WebGL on. Lines show the arm from its side until then, and all else works.");
     await pause();
     const renderer = new WebGLRenderer({ canvas, context });
     renderer.debug.checkShaderErrors = false; // to ask is to wait

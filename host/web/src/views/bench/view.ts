@@ -11,6 +11,7 @@ import { DrawnMotion } from "./drawn_motion";
 import { Faults } from "./faults";
 import { Following } from "./following";
 import { Lead } from "./lead";
+import { Played } from "./played";
 
 const TITLES: Readonly<Record<Size, readonly [title: string, unit: string]>> = {
   supply: ["Supply", "V"], load: ["Load at the tip", "kg"], noise: ["Sensor noise", "×"], play: ["Gear play", "×"],
@@ -32,6 +33,7 @@ export class BenchView implements View {
   private lead: Lead | null = null;
   private drawn: DrawnMotion | null = null;
   private faults: Faults | null = null;
+  private played: Played | null = null; // where no host has recorded motions
   private readonly recorded = el("select", { attrs: { "aria-label": "Recorded motion" } });
 
   /** Recorded motions are files of a host, where there is one. */
@@ -70,6 +72,7 @@ export class BenchView implements View {
   private build(controls: BenchControls): void {
     this.lead = new Lead(this.leaderControl, this.session.samples, controls.leader);
     this.drawn = new DrawnMotion(this.leaderControl, controls.leader);
+    if (!this.services) this.played = new Played(this.session, this.leaderControl, controls.leader);
     this.faults = new Faults(this.session, this.bench, controls.faults);
     this.controls.replaceChildren(
       el("div", { class: "side" }, this.lead.element, this.motions(controls), this.drawn.element),
@@ -82,7 +85,9 @@ export class BenchView implements View {
 
   private motions({ motions }: BenchControls): HTMLElement {
     const lead = async (motion: string): Promise<void> => {
-      if (await this.change({ motion })) this.leaderControl.letGo();
+      if (!(await this.change({ motion }))) return;
+      this.leaderControl.letGo();
+      this.played?.stop();
     };
     this.recorded.addEventListener("change", () => {
       if (this.recorded.value) void lead(this.recorded.value);
@@ -90,7 +95,8 @@ export class BenchView implements View {
     return el("section", { class: "card" }, el("h2", {}, "Let another hand lead"),
       el("div", { class: "row" },
         ...motions.map(({ name, title }) => button(title, () => void lead(name), { title: "From where the leader is, at once" })),
-        button("Hold still", () => void lead("hold")), ...(this.services ? [this.recorded] : [])));
+        button("Hold still", () => void lead("hold")), ...(this.services ? [this.recorded] : [])),
+      ...(this.played ? [this.played.element] : []));
   }
 
   private sizes(controls: BenchControls): HTMLElement {
@@ -122,5 +128,6 @@ export class BenchView implements View {
     this.following.frame();
     this.lead?.draw();
     this.drawn?.frame();
+    this.played?.frame();
   }
 }
