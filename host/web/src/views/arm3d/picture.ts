@@ -15,6 +15,7 @@ import type { ArmScene, Preset } from "./scene";
 
 const PRESET_NAMES: readonly Preset[] = ["corner", "front", "side", "top"];
 const GAUGES = "Rings grow with the voltage; arcs end at the stops, and are red when one is reached";
+const MARK_ROOM = 0.28; // of the picture's width, for half of a mark where it is narrow
 const DEFAULT_SUPPLY_V = TABLE.named("supply_mv").initial / 1000;
 
 export class ArmPicture {
@@ -111,7 +112,7 @@ export class ArmPicture {
     if (!fault) return;
     setText(this.mark, `${upperFirst(fault.words)}, ${JOINT_NAMES[fault.joint]}`);
     const [x, y] = this.scene && !this.canvas.hidden ? this.scene.placeOf(fault.joint) : [0.5, 0.1];
-    this.mark.style.left = `${(100 * x).toFixed(1)}%`;
+    this.mark.style.left = `${(100 * Math.max(MARK_ROOM, Math.min(1 - MARK_ROOM, x))).toFixed(1)}%`;
     this.mark.style.top = `${(100 * y).toFixed(1)}%`;
   }
 

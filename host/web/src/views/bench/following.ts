@@ -1,5 +1,6 @@
-// The plot beside the moving arm: how the joint that is led follows, in the last seconds.
+// The plot beside the moving arm: how the joint that is led follows, or the one at which a fault sits, in the last seconds.
 
+import { faultPlace } from "../../link/refusal";
 import { el, setText } from "../../parts/dom";
 import { themeChanged } from "../../parts/theme";
 import { JOINT_NAMES, TICKS_A_SECOND } from "../../session/samples";
@@ -16,7 +17,7 @@ export class Following {
   private readonly charts: Charts;
   private joint = -1;
 
-  constructor(session: Session, private readonly leaderControl: LeaderControl) {
+  constructor(private readonly session: Session, private readonly leaderControl: LeaderControl) {
     const window = new TimeWindow(session.samples);
     window.setSpan(SPAN_S * TICKS_A_SECOND);
     this.charts = new Charts([{ samples: session.samples, shade: (shades, joint) => shades.joints[joint]! }], window, ANGLE_ALONE);
@@ -29,7 +30,9 @@ export class Following {
   }
 
   frame(): void {
-    const { joint } = this.leaderControl;
+    const { faulty, status } = this.session;
+    const fault = faulty && status ? faultPlace(status) : null;
+    const joint = fault?.joint ?? this.leaderControl.joint;
     if (joint !== this.joint) {
       this.joint = joint;
       this.charts.showOnly(joint);
