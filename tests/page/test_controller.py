@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import BrowserContext, Page, expect
 
+from greywhale.files.arm import content_of
 from greywhale.protocol.schema import (
     DEFAULTS,
     PARAMETER_BY_NAME,
@@ -100,7 +101,8 @@ def test_two_controllers_are_compared_on_the_running_arm_by_one_key(page: Page, 
     await_state(page, "following")
 
 
-def test_what_runs_and_what_is_edited_are_predicted_for_every_joint(page: Page) -> None:
+def test_what_runs_and_what_is_edited_are_predicted_for_every_joint_and_arm(page: Page, stage: Stage) -> None:
+    (stage.folder / "mine.toml").write_bytes(content_of("worn"))
     page.get_by_role("button", name="Controller").click()
     told = page.get_by_role("region", name="What the model predicts for each joint")
     expect(told.get_by_role("row")).to_have_count(5)
@@ -111,6 +113,13 @@ def test_what_runs_and_what_is_edited_are_predicted_for_every_joint(page: Page) 
     expect(page.get_by_text("The arm default as it is described")).to_be_visible()
     page.get_by_role("button", name="Discard").click()
     expect(told).not_to_contain_text("→")
+    row = told.get_by_role("row").nth(1)
+    others = row.text_content() or ""
+    page.get_by_label("Model", exact=True).select_option("mine.toml")
+    expect(page.get_by_text("The arm mine.toml as it is described")).to_be_visible()
+    expect(row).not_to_have_text(others)
+    page.get_by_label("Model", exact=True).select_option("default")
+    expect(row).to_have_text(others)
 
 
 def test_what_another_host_changed_is_shown_and_what_it_left_half_done_does_not_run(page: Page, stage: Stage) -> None:

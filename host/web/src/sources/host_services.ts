@@ -107,7 +107,7 @@ function modelsIn({ files, arm }: HostState): Model[] {
   const of = (wanted: string): readonly string[] => files.filter(({ kind, name }) => kind === wanted && name !== arm).map(({ name }) => name);
   return [
     ...of("model").map((name) => ({ name, identified: true, says: `${name} is the arm as greywhale identify has found it.` })),
-    ...[arm, ...of("arm")].map((name) => ({ name, identified: false, says: `The arm ${name} as it is described; greywhale identify makes a model of the arm itself.` })),
+    ...[arm, ...of("arm")].map((name) => ({ name, identified: false, says: `The arm ${name} as it is described; greywhale identify makes a model.toml of the arm itself.` })),
   ];
 }
 

@@ -1,5 +1,6 @@
 // Lets a search tune: its course, what it changed in every joint, and the same hand followed by what was and what was found.
 
+import { upperFirst } from "../../link/refusal";
 import { curvesPicture } from "../../parts/curves";
 import { button, el, setText } from "../../parts/dom";
 import { motionCanvas, paintMotions } from "../../parts/motions";
@@ -61,8 +62,8 @@ export class TunePanel {
     try {
       this.tuned = await this.tuner.tune(before, model, (searched) => this.heard(searched));
       this.take(this.tuned.after);
-      setText(this.words, ["Found; Apply runs it.", ...this.tuned.notes, "Before → after:"].join(" "));
-      this.changes.replaceChildren(changesTable(this.tuned));
+      setText(this.words, "Found; Apply runs it. Below, before → after.");
+      this.changes.replaceChildren(el("ul", {}, ...this.tuned.notes.map((note) => el("li", {}, upperFirst(note)))), changesTable(this.tuned));
       this.draw();
     } catch (error) {
       setText(this.words, sentenceOf(error));
