@@ -35,6 +35,7 @@ from greywhale.protocol.schema import (
     EnableRequest,
     HelloReply,
     HelloRequest,
+    LeadPointRequest,
     LeadRequest,
     ParamGetReply,
     ParamGetRequest,
@@ -65,6 +66,9 @@ PATIENCE_MS = 60_000  # a page that shows nothing for so long has hung
 MOVING_S, RESTING_S, ANSWER_S = 0.2, 0.03, 0.005
 # And after each lease of a verb: longer than to the next one, shorter than the points last that a board keeps.
 LEASED_S = 0.15
+# And after the point of a lead: until a pulse of a motor has ended, and what it moved is at rest. Before the point
+# it lives for the answers alone, for the lease of a pulse is short.
+PULSE_S = 0.5
 LEASES = {EnableRequest.TYPE, LeadRequest.TYPE, RenewRequest.TYPE}
 ENDED = UserError("the bench has ended.")
 # A page waits half a second for an answer, four times. Here the board answers in its own time, on any machine.
@@ -124,7 +128,7 @@ class Stage:
     def let_live(self, seconds: float) -> float:
         """Give the board time from now on; when it ends."""
         with self._ready:
-            end_s = self._now_s + seconds
+            end_s = self._now_s + (ANSWER_S if self.relay.awaits_point else seconds)
             self._until_s = max(self._until_s, end_s)
             self._ready.notify_all()
         return end_s
@@ -237,6 +241,7 @@ class _PacedRelay(Relay):
         self._stage = stage
         self._frames = FrameDecoder()
         self.moves = False
+        self.awaits_point = False  # of a page that leads
 
     def _let_live(self) -> None:
         if not self._stage.still:
@@ -259,9 +264,14 @@ class _PacedRelay(Relay):
         if client.verb:
             self._stage.let_live(LEASED_S if asked & LEASES else ANSWER_S)
         elif StopRequest.TYPE in asked:
+            self.awaits_point = False
             self._stage.let_live(1.0)
         elif asked & STARTS:  # from now on the board waits for the page, also where a stop had given it more time
-            self._stage.let_live_no_longer(MOVING_S)
+            self.awaits_point = LeadRequest.TYPE in asked
+            self._stage.let_live_no_longer(ANSWER_S if self.awaits_point else MOVING_S)
+        elif LeadPointRequest.TYPE in asked:
+            self.awaits_point = False
+            self._stage.let_live(PULSE_S)
 
     def heard(self, data: bytes) -> None:
         super().heard(data)

@@ -65,19 +65,20 @@ def test_a_new_board_is_calibrated_by_the_page_and_follows(page: Page, stage: St
             press(page, HANDS)
     live_until(page, stage, "if the motors' supply has not")
     press(page, "Let the bench's hands let it hang")
+    live_until(page, stage, "Motor 3 of 4, joint 2, wrist pitch, gets pulses.")
+    press(page, "Stop")
     live_until(page, stage, "turned the wrong way, motor_sign is changed")
     tried = pulses(stage.samples())
     assert len(tried) >= 8
     assert max(tried) <= LEASE_MS
-    live_until(page, stage, "Go on")
-    press(page, "Go on")
+    press(page, "Leave the motors as they are")
     live_until(page, stage, "as the joint → reversed")
     assert stage.command("status")["eeprom_writes"] == 0, "nothing is stored unasked"
     press(page, "Yes, store it")
-    live_until(page, stage, "The board is calibrated.")
+    live_until(page, stage, "An arm file needs these potentiometers too")
     require_no_barrier(page, DARK_AND_NARROW, views="Calibrate")
     changed = {f"{pot}.{key}": key for pot in POTS for key in ("zero", "scale")} | {"joint1.motor_sign": "motor_sign"}
-    names = [name for name in PARAMETER_BY_NAME if name in changed or "limit_" in name and name.startswith("joint")]
+    names = [name for name in PARAMETER_BY_NAME if name in changed or ("limit_" in name and name.startswith("joint"))]
     found = stage.runs(*(PARAMETER_BY_NAME[name] for name in names))
     for name, key in changed.items():
         was = DEFAULTS[PARAMETER_BY_NAME[name].index] * (-1 if name in ("leader1.scale", "joint1.motor_sign") else 1)

@@ -189,7 +189,7 @@ def test_a_board_is_watched_driven_and_changed(context: BrowserContext, site: Si
         assert 0.0 < max(seen["duties"]) <= PULSE_SHARES[-1] + 1 / 400
         assert seen["longest_on_s"] <= LEASE_MS / 1000 + 0.002
         press(page, "Go on", "Yes, store it")
-        expect(page.get_by_text("The board is calibrated.")).to_be_visible()
+        expect(page.get_by_text("An arm file needs these potentiometers too")).to_be_visible()
         require_no_barrier(page, DARK_AND_NARROW, views="Port|Calibrate")  # the others are the site's too
 
         press(page, "Parameters")

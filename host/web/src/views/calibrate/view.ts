@@ -382,5 +382,5 @@ export class CalibrateView implements View {
 /** The group of a step, and its name there. */
 function stepInGroup(step: Step): readonly [group: string, short: string] {
   if (step.kind === "sweep") return [`${step.pot < JOINTS ? "Leader" : "Follower"} sweeps`, String(step.pot % JOINTS)];
-  return step.kind === "pose" ? ["Poses", String(step.place + 1)] : ["Then", upperFirst(step.kind)];
+  return step.kind === "pose" ? ["Poses", ["First", "Second", "Again", "Third"][step.place]!] : ["Then", upperFirst(step.kind)];
 }
