@@ -6,6 +6,7 @@ import { rawAsGiven } from "../../files/raw_value";
 import type { Parameter } from "../../link/declared";
 import { TABLE } from "../../link/schema";
 import { button, download, el, fileField, setText, tableHead } from "../../parts/dom";
+import { grey } from "../../parts/grey";
 import type { View } from "../view";
 import type { NamedText } from "../../parts/named_text";
 import { physicalText } from "../../files/log";
@@ -17,10 +18,11 @@ export class ParametersView implements View {
   private readonly inputs: readonly HTMLInputElement[];
   private edited: ReadonlyMap<number, number> = new Map(); // raw values by index, not yet on the board
   private readonly said = el("p", { class: "quiet", attrs: { role: "status" } });
-  private readonly apply = button("Apply", () => this.act(() => this.run()), { class: "primary", title: "Run what is changed here; it is not stored" });
-  private readonly store = button("Store", () => this.act(() => this.keepRunning()), { title: "Write what runs to the board's memory" });
-  private readonly save = button("Save to a file", () => this.act(() => this.keep()), { title: "All parameters, as greywhale params restore takes them" });
-  private readonly discard = button("Discard", () => this.edit(new Map()), { title: "What is changed here is forgotten" });
+  private readonly kept = el("p", { class: "quiet" }); // of what runs
+  private readonly apply = button("Apply", () => this.act(() => this.run()), { class: "primary" });
+  private readonly store = button("Store", () => this.act(() => this.keepRunning()));
+  private readonly save = button("Save to a file", () => this.act(() => this.keep()));
+  private readonly discard = button("Discard", () => this.edit(new Map()));
   private readonly changes = el("ul", { class: "differences", attrs: { tabindex: "0", "aria-label": "Changes" } });
   private waiting = 0;
   private last: Promise<void> = Promise.resolve();
@@ -35,7 +37,7 @@ export class ParametersView implements View {
       el("div", { class: "tools" }, fileField("Upload a controller.toml", ".toml", (file) => file && this.act(async () => this.upload(await file))),
         fileField("Restore a parameter file", ".toml", (file) => file && this.act(async () => this.restore(await file)))),
       el("div", { class: "tools" }, this.apply, this.store, this.discard, this.save),
-      this.said, this.changes,
+      this.said, this.kept, this.changes,
       el("div", { class: "scroll" }, el("table", {}, head, el("tbody", {}, ...rows))));
     session.parametersChanged.on(() => this.show());
     session.changed.on(() => this.refreshButtons());
@@ -142,10 +144,25 @@ export class ParametersView implements View {
   }
 
   private refreshButtons(): void {
-    const may = !this.waiting && this.session.link.open && this.session.driver.you;
-    this.apply.disabled = !may || !this.changed().length;
-    this.discard.disabled = this.waiting > 0 || !this.edited.size;
-    this.store.disabled = !may;
-    this.save.disabled = this.waiting > 0 || !this.session.link.open;
+    const { link, whyNotChange, motorsOn } = this.session;
+    const busy = this.waiting > 0 ? "One moment." : "";
+    const may = busy || (link.open ? "" : "No board is there.");
+    const change = may || whyNotChange;
+    const unchanged = this.changed().length ? "" : "Nothing is changed here.";
+    grey(this.apply, change || unchanged || (motorsOn ? "Parameters change with the motors off; press Stop first." : ""), "Run what is changed here; it is not stored");
+    grey(this.discard, busy || (this.edited.size ? "" : "Nothing is changed here."), "What is changed here is forgotten");
+    grey(this.store, change, "Write what runs to the board's memory");
+    grey(this.save, may, "All parameters, as greywhale params restore takes them");
+    setText(this.kept, this.whatIsKept());
+  }
+
+  /** How what runs compares with what the board starts with. */
+  private whatIsKept(): string {
+    const { parameters, stored, storedCrc, storesNothing } = this.session;
+    if (!parameters) return "";
+    if (!stored) return storedCrc === null ? "What the board has stored is not known before it starts or stores." : "The board has stored another set than the one that runs.";
+    const count = stored.filter((value, index) => value !== parameters[index]).length;
+    if (!count) return storesNothing ? "Nothing is stored: the board starts with what runs, its defaults." : "The board has stored what runs.";
+    return `${count === 1 ? "One parameter is" : `${count} parameters are`} not stored: the board starts with ${storesNothing ? "its defaults" : "what it has stored"}.`;
   }
 }
