@@ -12,7 +12,6 @@ import pytest
 from playwright.sync_api import BrowserContext, Locator, Page, expect
 
 from greywhale.base.telling import Telling
-from greywhale.board.calibrate.words import sweep_asked
 from greywhale.commission.measures import NAMES, Measures
 from greywhale.commission.motions import PARTS
 from greywhale.dashboard.client import Client
@@ -26,7 +25,6 @@ from tests.page import stage as stages
 from tests.page.barriers import DARK_AND_NARROW, LIGHT_AND_WIDE, require_no_barrier
 from tests.page.stage import PATIENCE_MS, Stage
 from tests.support.tellings import told_by_verbs, words
-from tools.support.calibrating_person import CalibratingPerson
 
 __all__ = ["told_by_verbs"]
 pytestmark = pytest.mark.slow
@@ -221,23 +219,6 @@ def test_an_arm_is_described_by_answers_to_its_questions(desk: Page, stage: Stag
     expect(done(begin(desk, "arm match", arm="arm.toml"))).to_contain_text("matched.toml is written")
 
 
-def test_a_calibration_takes_answers_and_ends_where_it_is_stopped(desk: Page, stage: Stage) -> None:
-    job = begin(desk, "calibrate", in_use="1", yes=True)
-    person = CalibratingPerson(stage.bench)
-    said = job.get_by_label("What the verb says")
-    for step in ("Sweep 1 of 2", "Sweep 2 of 2"):
-        while step not in said.inner_text():
-            stage.live(0.1)  # the verb listens to a board at rest
-        person.follow(next(line for line in said.inner_text().splitlines() if line.startswith(step)))
-        while person.answer() is None:
-            stage.live(0.1)
-        job.get_by_role("button", name="Answer").click()
-    while "Pose 1 of 4" not in said.inner_text():
-        stage.live(0.1)
-    job.get_by_role("button", name="Stop this").click()
-    end(job, "stopped")
-
-
 def facts_of(verb: str) -> Facts:
     """A job that runs."""
     return {
@@ -256,19 +237,6 @@ def tell(stage: Stage, monkeypatch: pytest.MonkeyPatch) -> Callable[[Facts], Non
             listener(facts)
 
     return tell
-
-
-def test_a_calibration_shows_the_way_of_the_joint_that_it_asks_for(desk: Page, tell: Callable[[Facts], None]) -> None:
-    facts = facts_of("calibrate")
-    pictures = []
-    for pot in range(2):
-        tell({**facts, "said": [sweep_asked(pot, pot + 1, 8)]})
-        shown = desk.get_by_role("img", name=f"The positive way of joint {pot}")
-        expect(shown).to_be_visible()
-        pictures.append(shown.screenshot())
-    assert pictures[0] != pictures[1]
-    tell({**facts, "state": "done", "result": {}, "exit_code": 0, "said": [sweep_asked(1, 2, 8)]})
-    expect(shown).to_be_hidden()
 
 
 def test_a_commissioning_shows_what_was_predicted_beside_what_was_measured(

@@ -167,7 +167,7 @@ class Job:
         self._wake()
 
     def say(self, line: str) -> None:
-        """Write a line to its standard input, from which calibrate reads its answers."""
+        """Write a line to its standard input."""
         assert self._process.stdin is not None
         with contextlib.suppress(OSError, ValueError):  # it has ended
             self._process.stdin.write(printable(line).replace("\n", " ").encode() + b"\n")

@@ -180,8 +180,6 @@ export interface Jobs {
   stop(id: string): Promise<void>;
   /** Forgets a job that has ended. */
   putAway(id: string): Promise<void>;
-  /** Writes a line to a verb that asks. */
-  answer(id: string, line: string): Promise<void>;
   /** Hears each job as it is, and whenever something about it changes; `gone` hears which was put away. */
   listen(heard: (job: Job) => void, gone?: (id: string) => void): void;
 }

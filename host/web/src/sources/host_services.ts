@@ -22,7 +22,6 @@ export class HostServices implements Services {
     start: async (verb, given) => (await this.ask<Job>("POST", "/jobs", { verb, arguments: given })).id,
     stop: (id) => this.ask<unknown>("DELETE", `/jobs/${encodeURIComponent(id)}`).then(() => undefined),
     putAway: (id) => this.ask<unknown>("DELETE", `/jobs/${encodeURIComponent(id)}/card`).then(() => undefined),
-    answer: (id, line) => this.ask<unknown>("POST", `/jobs/${encodeURIComponent(id)}`, { line }).then(() => undefined),
     listen: (heard, gone = () => undefined) => {
       this.listeners.push({ heard, gone });
       if (this.listeners.length === 1) this.hear();

@@ -12,9 +12,6 @@ import { tellingElements, type OpenVerb } from "./telling";
 /** What a card's buttons and pictures need of the view around it. */
 export type Around = { readonly open: OpenVerb; readonly log: ReadLog };
 
-/** The sentence by which a calibration asks for a joint. */
-const ASKED = /\bjoint ([0-3])\b/;
-
 export class JobCard {
   readonly element: HTMLElement;
   private readonly title: HTMLElement;
@@ -23,9 +20,7 @@ export class JobCard {
   private readonly text = el("p", { class: "quiet" });
   private readonly error = el("p", { class: "job-error", attrs: { role: "alert" } });
   private readonly said = el("pre", { class: "said", attrs: { tabindex: "0", "aria-label": "What the verb says" } });
-  private readonly answer: HTMLFormElement;
   private readonly curve = new SearchCurve();
-  private readonly joint = el("div", { class: "joint-picture", hidden: true, attrs: { role: "img" } });
   private readonly result = el("div", { class: "result" });
   private readonly stop: HTMLButtonElement;
   private shown: Job["state"] | null = null;
@@ -35,15 +30,9 @@ export class JobCard {
   ) {
     this.title = el("h2", {}, verb);
     this.stop = button("Stop this", () => attempt(() => jobs.stop(id)));
-    const line = el("input", { type: "text", attrs: { "aria-label": `Answer to ${verb}` } });
-    this.answer = el("form", { class: "row", on: { submit: (event) => {
-      event.preventDefault();
-      attempt(() => jobs.answer(id, line.value));
-      line.value = "";
-    } } }, line, el("button", { type: "submit" }, "Answer"));
     this.element = el("section", { class: "card job" },
       el("div", { class: "row" }, this.title, this.state, el("span", { class: "gap" }), this.stop),
-      this.bar, this.text, this.curve.element, this.error, this.said, this.joint, this.answer, this.result);
+      this.bar, this.text, this.curve.element, this.error, this.said, this.result);
   }
 
   show(job: Job): void {
@@ -51,7 +40,6 @@ export class JobCard {
     setText(this.state, job.state);
     this.state.dataset["state"] = job.state === "failed" ? "fault" : running ? "following" : job.state;
     this.stop.hidden = this.bar.hidden = !running;
-    this.answer.hidden = !running || !job.said.length; // a verb that asks has said what
     if (job.progress) {
       this.bar.max = job.progress.total || 1;
       this.bar.value = job.progress.done;
@@ -62,22 +50,12 @@ export class JobCard {
     setText(this.error, job.error ?? "");
     const lines = job.said.filter((line) => line !== `greywhale: ${job.error}`).join("\n");
     this.said.hidden = !lines;
-    this.showJoint(running && job.verb === "calibrate" ? job.said.at(-1) ?? "" : "");
     if (this.said.textContent !== lines) {
       this.said.textContent = lines;
       this.said.scrollTop = this.said.scrollHeight;
     }
     if (job.state !== this.shown && job.result !== null) this.showResult(job.result, job.telling);
     this.shown = job.state;
-  }
-
-  /** The positive way of the joint that a line asks for, a part of the picture that docs/calibrate.md has. */
-  private showJoint(line: string): void {
-    const asked = ASKED.exec(line)?.[1];
-    this.joint.hidden = asked === undefined;
-    if (asked === undefined || asked === this.joint.dataset["joint"]) return;
-    this.joint.dataset["joint"] = asked;
-    this.joint.setAttribute("aria-label", `The positive way of joint ${asked}`);
   }
 
   /** The step that is done now; a cost is in the curve, any other note stands beside. */
