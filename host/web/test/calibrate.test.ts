@@ -3,8 +3,10 @@ import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
+import { potReading } from "../src/session/pots";
+import { Samples } from "../src/session/samples";
 import { Rules, type Pose, type Sweep } from "../src/views/calibrate/rules";
-import { TABLE } from "../src/link/schema";
+import { Sample, State, TABLE } from "../src/link/schema";
 
 type Asked = { rule: string; given: number[]; numbers: number[]; words: string };
 const given = JSON.parse(readFileSync(process.env["CALIBRATIONS"]!, "utf8")) as { asked: Asked[]; pulse_set: number[] };
@@ -41,6 +43,12 @@ test("poses that contradict each other are refused in sentences", () => {
   assert.ok(Math.abs(rules.apartIn(found, off(pose(0.5), 1, 10), ALL)[1]! - 0.05) < 1e-12);
 });
 
+test("without a known second pose the tracks have the length that is given, and the follower is made to fit", () => {
+  const same = { angles: ALL.map(() => 0), counts: pose(0.8).counts.map((count, pot) => (pot < 4 ? count : 512 + 0.9 * (count - 512))) };
+  const { scale: found } = rules.match(sweeps, pose(0), same, 0.005 * 1023, ALL);
+  found.forEach((one, pot) => assert.ok(Math.abs(one - scale[pot]! / (pot < 4 ? 1 : 0.9)) < 1e-12));
+});
+
 test("a motor is pulsed until it moves its joint, or another one", async () => {
   const pulses: (readonly [number, number])[] = [];
   const moves = (moved: number, least: number) => async (volts: number, way: number): Promise<number[]> => {
@@ -62,4 +70,19 @@ test("counts are those of the converter, whatever set the angle came from", () =
   const [leader, other] = rules.counts([-4096, 0, 0, 0, 0, 0, 0, 0], raw);
   assert.equal(leader!.toFixed(3), (8184 / 16 + (4096 * 8192) / 5367 / 16).toFixed(3));
   assert.equal(other, 8184 / 16);
+});
+
+test("a potentiometer reads what the rules say, in degrees once it is calibrated, and a rail is marked", () => {
+  const raw = [...DEFAULTS];
+  for (const [name, value] of [["leader0.scale", -9000], ["leader0.zero", 6000], ["follower3.scale", 0]] as const) raw[TABLE.named(name).index] = value;
+  const samples = new Samples(64);
+  const add = (leader: number[]): void => samples.add(Sample.pack({ tick: samples.end, state: State.is.disabled, fault: 0, leader, follower: [0, 0, 0, 0], voltage: [0, 0, 0, 0] }));
+  add([-2048, 1024, 0, 0]);
+  const counts = rules.counts([-2048, 1024, 0, 0, 0, 0, 0, 0], raw);
+  const [mine, fresh] = [0, 1].map((pot) => potReading(samples, 0, pot, raw)!);
+  assert.ok(Math.abs(mine!.counts - counts[0]!) < 1e-9 && Math.abs(fresh!.counts - counts[1]!) < 1e-9);
+  assert.deepEqual([mine!.degrees?.toFixed(2), fresh!.degrees], ["-28.65", null]);
+  assert.equal(potReading(samples, 0, 7, raw), null);
+  add([0, 10724, -10724, 0]);
+  assert.deepEqual([1, 2, 3].map((pot) => potReading(samples, 1, pot, raw)!.atRail), [true, true, false]);
 });

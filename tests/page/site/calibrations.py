@@ -54,6 +54,8 @@ def poses() -> Iterator[Question]:
         yield "held", still + np.linspace(0.0, way, 500)[:, None]
     for pose in (second, second / 4, -second):
         yield "solve", ALL, np.sign(scale), ends.T, np.zeros(4), zero, pose, other
+    yield "solve", ALL, np.sign(scale), ends.T, np.zeros(4), zero, 5.0
+    yield "match", ALL, np.sign(scale), ends.T, zero, scale, np.zeros(4), zero, other
     for by in (7.0, 9.0):
         yield "slipped", zero, zero + by
     for by in (3.0, 90.0):
