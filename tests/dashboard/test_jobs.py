@@ -168,8 +168,8 @@ def test_each_word_of_the_forms_belongs_to_an_argument() -> None:
         verb, _, name = key.rpartition(" ")
         assert (verb, name) in shown if verb else sum(name == one for _, one in shown) > 1, key
     for verbs in GROUPS.values():
-        for verb, words in verbs.items():
-            assert {(verb, name) for name in words.first} <= shown, verb
+        for verb, form in verbs.items():
+            assert {(verb, name) for name in form.first} <= shown, verb
     assert {kind for facts in VERBS.values() for one in facts["arguments"] for kind in one["files"]} <= {
         *("log", "motion", "firmware"), *(kind.name.lower() for kind in Kind)
     }  # fmt: skip

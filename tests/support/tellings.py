@@ -39,6 +39,7 @@ from greywhale.loop.traces import Traces
 from greywhale.protocol import schema
 from greywhale.protocol.table import ParameterTable
 from tests.adapt.test_decide import stiffer
+from tests.arm.make.test_new import ANSWERS
 from tests.board.fake_board import FakeBoard
 from tests.cli.example_log import write_log
 from tests.tune.models import judged, write_model
@@ -92,14 +93,15 @@ def told_by_verbs(
     write_log(Path("log.csv"))
     save_leader(Path("motion.csv"), Trajectory(np.array([0.0, 0.5]), np.zeros((2, 4))))
     write_model(Path("model.toml"))
+    Path("answers.toml").write_text(ANSWERS, encoding="utf-8")
     made_up(monkeypatch)
     capsys.readouterr()
     found = {}
     with FakeBoard() as board:
         monkeypatch.setattr(flash_verb, "flash", lambda *given: schema.HelloReply.unpack(board.hello()))
         for line in LINES:
-            verb = re.split(r" (?=[^ ]*[.=-]|table_8)", line)[0]
-            needs_board = not line.startswith(("evaluate", "identify", "tune"))
+            verb = re.split(r" (?=[^ ]*[.=-]|table_8|default)", line)[0]
+            needs_board = not line.startswith(("arm new", "evaluate", "identify", "tune"))
             code = entry.run([*line.split(), *(["--port", board.port] if needs_board else [])])
             printed = capsys.readouterr()
             assert len(page.told) == 1, f"{line}: {code} {printed.err}"
@@ -108,6 +110,8 @@ def told_by_verbs(
 
 
 LINES = (
+    "arm new --answers answers.toml --out arm.toml",
+    "arm match default --out matched.toml",
     "record --seconds 0.3 --enable --out record.csv",
     "replay motion.csv --out replay.csv",
     "doctor --seconds 0.5",

@@ -12,6 +12,7 @@ from greywhale.arm.from_urdf import Imported, import_urdf
 from greywhale.arm.parameters import JOINT_NAMES
 from greywhale.base.errors import BadUsage
 from greywhale.base.formats.whole import refuse_inputs, write_text
+from greywhale.base.telling import Sentences, Telling
 from greywhale.base.types import PerJoint
 from greywhale.cli.arm_match import match
 from greywhale.cli.arm_new import new
@@ -60,7 +61,7 @@ def import_(urdf: Path, out: Path, supply: float, overwrite: bool, as_json: bool
     require_new(overwrite, out)
     found = import_urdf(urdf, supply)
     write_text(out, arm_toml(found.arm, f"Made by greywhale arm import from {urdf.name}."))
-    show(as_json, _facts(out, found), _text(out, found))
+    show(as_json, _facts(out, found), _telling(out, found))
 
 
 def _facts(out: Path, found: Imported) -> ArmImportAnswer:
@@ -73,8 +74,8 @@ def _facts(out: Path, found: Imported) -> ArmImportAnswer:
     }
 
 
-def _text(out: Path, found: Imported) -> str:
-    lines = [*table(found.arm, found.summary), "", "greywhale's angles, from those of the URDF (degrees):"]
+def _telling(out: Path, found: Imported) -> Telling:
+    lines = ["greywhale's angles, from those of the URDF (degrees):"]
     offsets = np.degrees(found.offsets)
     for joint, name in enumerate(JOINT_NAMES):
         if joint not in found.arm.joints_in_use:
@@ -83,4 +84,6 @@ def _text(out: Path, found: Imported) -> str:
         sign, offset = found.signs[joint], offsets[joint]
         lines.append(f"  {name:16}{'-' if sign < 0 else ' '}q {offset:+.1f}")
     remarks = [f"Note: {remark}." for remark in found.remarks]
-    return "\n".join([*lines, *notes(found.summary), *remarks, "", f"{out} is written."])
+    told_notes = [Sentences(remarks, near=bool(notes(found.summary)))] if remarks else []
+    parts = (*table(found.arm, found.summary), Sentences(lines), *notes(found.summary), *told_notes)
+    return Telling((*parts, Sentences((f"{out} is written.",))))

@@ -10,6 +10,7 @@ import numpy as np
 
 from greywhale.arm.parameters import JOINT_NAMES
 from greywhale.base.formats.whole import refuse_inputs, write_text
+from greywhale.base.telling import Column, Row, Sentences, Step, Table, Telling
 from greywhale.base.types import PerJoint
 from greywhale.cli.output import FILE, json_option, option, overwrite_option, port_option, show
 from greywhale.files.arm import load_arm
@@ -56,8 +57,10 @@ def match(arm: str, port: str | None, out: Path, overwrite: bool, as_json: bool)
         for bank in (found.leader_pots, found.follower_pots)
     )
     answer: ArmMatchAnswer = {"written": str(out), "track_deg": {"leader": leader, "follower": follower}}
-    lines = [f"{out} is written. Tracks in degrees, leader and follower:"]
+    rows = []
     for joint, name in enumerate(JOINT_NAMES):
         pair = (found.leader_pots.joint[joint], found.follower_pots.joint[joint])
-        lines.append(f"  {name:16}" + "".join(f"{np.degrees(pot.direction * pot.track):>9.1f}" for pot in pair))
-    show(as_json, answer, "\n".join(lines))
+        rows.append(Row((name, *(f"{np.degrees(pot.direction * pot.track):.1f}" for pot in pair))))
+    columns = (Column(left=True), Column("leader", "degrees"), Column("follower", "degrees"))
+    steps = (Step("commission", "Let the arm learn", {"arm_file": str(out)}),)
+    show(as_json, answer, Telling((Sentences((f"{out} is written, with these tracks:",)), Table(columns, rows)), steps))

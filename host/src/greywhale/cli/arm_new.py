@@ -17,6 +17,7 @@ from greywhale.arm.make.questions import Answers, Question, collect
 from greywhale.arm.parameters import ArmParameters
 from greywhale.base.errors import UserError, counted
 from greywhale.base.formats.whole import refuse_inputs, write_text
+from greywhale.base.telling import Sentences, Step, Telling
 from greywhale.cli.arm_table import Lifting, lifting, notes, table
 from greywhale.cli.output import FILE, json_option, option, overwrite_option, show, tell
 from greywhale.files.model import arm_toml
@@ -52,8 +53,9 @@ def new(answers: Path | None, out: Path, overwrite: bool, as_json: bool) -> None
         arm = assemble(given)
     found = summarise(arm)
     write_text(out, arm_toml(arm, "Made by greywhale arm new."))
-    text = [*table(arm, found), *notes(found, left_out), ""] if answers is not None else []
-    show(as_json, _facts(out, found, left_out), "\n".join([*text, f"{out} is written."]))
+    parts = [*table(arm, found), *notes(found, left_out)] if answers is not None else []
+    steps = (Step("arm match", "Take the potentiometers as they are calibrated", {"arm": str(out)}),)
+    show(as_json, _facts(out, found, left_out), Telling((*parts, Sentences((f"{out} is written.",))), steps))
 
 
 def _agreed(person: Person, out: Path) -> ArmParameters:
@@ -61,7 +63,7 @@ def _agreed(person: Person, out: Path) -> ArmParameters:
     while True:
         arm = assemble(person.answers())
         found = summarise(arm)
-        tell("\n".join(["", *table(arm, found), *notes(found), ""]))
+        tell(f"\n{Telling((*table(arm, found), *notes(found))).text()}\n")
         try:
             person.confirm(f"Write {out}?", f"{out} was not written.")
         except Back:

@@ -8,6 +8,8 @@ import numpy as np
 
 from greywhale.arm.make import Summary
 from greywhale.arm.parameters import JOINT_NAMES, ArmParameters
+from greywhale.arm.summary import JointSummary
+from greywhale.base.telling import Column, Part, Row, Sentences, Table
 from greywhale.protocol.table import ParameterTable
 
 MUCH_TO_HOLD_SHARE = 0.6  # of stall_volts: the rest is for starting
@@ -31,26 +33,35 @@ class Lifting(TypedDict):
     before_it_moves: str  # what to do; empty where nothing
 
 
-def table(arm: ArmParameters, found: Summary) -> list[str]:
+COLUMNS = (
+    Column(width=16, left=True),
+    Column("gravity, at most", width=17),
+    Column("motor at standstill", width=20),
+    Column("share", width=7),
+    Column("fastest", width=13),
+)
+
+
+def table(arm: ArmParameters, found: Summary) -> list[Part]:
     """Gravity against motor for each joint, and its speed."""
-    lines = [f"{arm.name}: {found.mass:.3g} kg, motors at {arm.drive.supply:g} V.", ""]
-    lines.append(f"{'':16}{'gravity, at most':>18}{'motor at standstill':>21}{'share':>8}{'fastest':>14}")
-    for one in found.joints:
-        lines.append(
-            f"{JOINT_NAMES[one.joint]:16}{one.gravity:>14.3g} N m{one.stall:>17.3g} N m{100 * one.share:>6.0f} %"
-            f"{np.degrees(one.no_load_speed):>8.0f} deg/s"
-        )
-    return lines
+
+    def row(one: JointSummary) -> Row:
+        torques = (f"{value:.3g} N m" for value in (one.gravity, one.stall))
+        speed = f"{np.degrees(one.no_load_speed):.0f} deg/s"
+        return Row((JOINT_NAMES[one.joint], *torques, f"{100 * one.share:.0f} %", speed))
+
+    title = Sentences((f"{arm.name}: {found.mass:.3g} kg, motors at {arm.drive.supply:g} V.",))
+    return [title, Table(COLUMNS, [row(one) for one in found.joints])]
 
 
-def notes(found: Summary, left_out: tuple[str, ...] = ()) -> list[str]:
+def notes(found: Summary, left_out: tuple[str, ...] = ()) -> list[Part]:
     """Warnings, what to do before it moves, and which answers were left out."""
     lines = [f"Warning: {warning}" for warning in found.warnings]
     if before := advice(found):
         lines.append(f"Before it moves: {before}")
     if left_out:
         lines.append(f"Note: the file leaves out {len(left_out)} answers, taken as usual: {', '.join(left_out)}.")
-    return ["", *lines] if lines else []
+    return [Sentences(lines)] if lines else []
 
 
 def advice(found: Summary) -> str:

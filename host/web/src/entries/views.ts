@@ -93,8 +93,10 @@ export class Views {
     document.getElementById("view")!.focus(); // the button is gone
   }
 
+  /** Opens the form of a verb; a calibration has a view of its own. */
   private openVerb(verb: string, given: Readonly<Record<string, unknown>>): void {
-    if (!this.verbs) return;
+    if (verb === "calibrate") this.show("Calibrate");
+    if (!this.verbs || verb === "calibrate") return;
     this.show(this.verbs.name);
     void this.verbs.open(verb, given);
   }
