@@ -215,7 +215,7 @@ def test_an_arm_is_described_by_answers_to_its_questions(desk: Page, stage: Stag
     card = desk.locator(".job").filter(has=desk.get_by_role("heading", name="arm new", exact=True))
     expect(done(card)).to_contain_text("arm.toml is written")
     assert load_arm(stage.folder / "arm.toml").link[1].length == pytest.approx(0.15)
-    expect(form_of(desk, "arm new").locator("[name=out]")).to_have_value("arm-2.toml")  # the next that is free
+    expect(form.locator("[name=out]")).to_have_value("arm-2.toml")  # the next that is free
     expect(done(begin(desk, "arm match", arm="arm.toml"))).to_contain_text("matched.toml is written")
 
 

@@ -10,6 +10,8 @@ export interface Field {
   readonly element: HTMLElement;
   value(): unknown;
   set(value: unknown): void;
+  /** Takes in which files there are now; what a person chose stays. */
+  renew(state: HostState): void;
   /** The reason why it cannot be taken as it is, in a sentence, "" if it can. */
   problem(): string;
   /** Shows a reason beside it; "" takes it away. */
@@ -19,20 +21,19 @@ export interface Field {
 
 /** A field for every kind but the answers about an arm. */
 export function makeField(argument: Argument, state: HostState): Field {
-  if (argument.kind === "flag") return new Flag(argument);
-  if (argument.kind === "choice" && !argument.many) {
-    return new Choice(argument, argument.choices.map((one) => ({ value: one, text: one })));
-  }
-  if (argument.kind === "file" && argument.files.length) {
-    return argument.many ? new FileBoxes(argument, fitting(argument, state)) : new FileChoice(argument, state);
-  }
-  const line = new Line(argument);
-  const free = freeName(argument, state);
-  if (free) line.set(free);
-  return line;
+  const field = fieldOf(argument);
+  field.renew(state);
+  return field;
 }
 
-/** The next free name like that of a new file, where that is taken; "" where it is free. */
+function fieldOf(argument: Argument): Field {
+  if (argument.kind === "flag") return new Flag(argument);
+  if (argument.kind === "choice" && !argument.many) return new Choice(argument, argument.choices.map((one) => ({ value: one, text: one })));
+  if (argument.kind === "file" && argument.files.length) return argument.many ? new FileBoxes(argument) : new FileChoice(argument);
+  return new Line(argument);
+}
+
+/** The name of a new file as usual, "" where that is free, or the next that is. */
 function freeName({ kind, default: usual }: Argument, { files }: HostState): string {
   const taken = new Set(files.map(({ name }) => name));
   if (kind !== "file" || typeof usual !== "string" || !taken.has(usual)) return "";
@@ -64,6 +65,10 @@ abstract class Labelled implements Field {
   abstract value(): unknown;
   abstract set(value: unknown): void;
   protected abstract readonly target: HTMLElement;
+
+  renew(_state: HostState): void {
+    // most fields know no files
+  }
 
   problem(): string {
     return this.argument.required && this.value() === undefined ? `${this.argument.label}: this is needed.` : "";
@@ -113,6 +118,7 @@ class Flag extends Labelled {
 /** Text, a number, or several with commas between. */
 class Line extends Labelled {
   protected readonly target = el("input", { type: "text" });
+  private proposed = "";
 
   constructor(argument: Argument) {
     super(argument);
@@ -132,6 +138,12 @@ class Line extends Labelled {
 
   set(value: unknown): void {
     this.target.value = Array.isArray(value) ? value.join(", ") : String(value);
+  }
+
+  override renew(state: HostState): void {
+    const isOurs = this.target.value === this.proposed;
+    this.proposed = freeName(this.argument, state);
+    if (isOurs) this.target.value = this.proposed;
   }
 
   override problem(): string {
@@ -154,15 +166,22 @@ class Choice extends Labelled {
   constructor(argument: Argument, offers: readonly Offer[], ...more: HTMLElement[]) {
     super(argument);
     this.target.name = argument.name;
-    const usual = `as usual${argument.default === null ? "" : `: ${String(argument.default)}`}`;
-    this.target.append(el("option", { value: "" }, argument.required ? "choose ..." : usual));
+    this.offer(offers);
+    this.lay(this.target, ...more);
+  }
+
+  /** Offers these; what is chosen stays. */
+  protected offer(offers: readonly Offer[]): void {
+    const { required, default: usual } = this.argument;
+    const { value: chosen } = this.target;
+    this.target.replaceChildren(el("option", { value: "" }, required ? "choose ..." : `as usual${usual === null ? "" : `: ${String(usual)}`}`));
     for (const { value, text, group } of offers) {
       if (group && this.target.lastElementChild?.getAttribute("label") !== group) {
         this.target.append(el("optgroup", { attrs: { label: group } }));
       }
       (group ? this.target.lastElementChild! : this.target).append(el("option", { value }, text));
     }
-    this.lay(this.target, ...more);
+    if (chosen) this.set(chosen);
   }
 
   value(): string | undefined {
@@ -182,19 +201,24 @@ const ELSEWHERE = "\n"; // no file is called so
 class FileChoice extends Choice {
   private readonly other: HTMLInputElement;
 
-  constructor(argument: Argument, state: HostState) {
-    const builtIn = [...(argument.files.includes("arm") ? state.arms : []), ...(argument.files.includes("controller") ? state.controllers : [])];
+  constructor(argument: Argument) {
     const other = el("input", { type: "text", hidden: true, attrs: { "aria-label": `${argument.label}: another name` } });
-    super(argument, [
-      ...fitting(argument, state).map((file) => ({ value: file.name, text: `${file.name} (${fileWords(file)})`, group: state.folder })),
-      ...builtIn.map((name) => ({ value: name, text: name, group: "Comes with greywhale" })),
-      { value: ELSEWHERE, text: "another name ...", group: "Elsewhere in the folder" },
-    ], other);
+    super(argument, [], other);
     this.other = other;
     this.target.addEventListener("change", () => {
       other.hidden = this.target.value !== ELSEWHERE;
       if (!other.hidden) other.focus();
     });
+  }
+
+  override renew(state: HostState): void {
+    const { files } = this.argument;
+    const builtIn = [...(files.includes("arm") ? state.arms : []), ...(files.includes("controller") ? state.controllers : [])];
+    this.offer([
+      ...fitting(this.argument, state).map((file) => ({ value: file.name, text: `${file.name} (${fileWords(file)})`, group: state.folder })),
+      ...builtIn.map((name) => ({ value: name, text: name, group: "Comes with greywhale" })),
+      { value: ELSEWHERE, text: "another name ...", group: "Elsewhere in the folder" },
+    ]);
   }
 
   override value(): string | undefined {
@@ -207,16 +231,20 @@ class FileBoxes extends Labelled {
   protected readonly target = el("div", { class: "boxes", attrs: { role: "group", tabindex: "-1" } });
   private readonly others: HTMLInputElement;
 
-  constructor(argument: Argument, files: readonly NamedFile[]) {
+  constructor(argument: Argument) {
     super(argument);
     this.target.setAttribute("aria-label", this.text);
-    const boxes = files.map((file) => el("label", {},
-      el("input", { type: "checkbox", value: file.name, attrs: { name: argument.name } }), ` ${file.name} `,
-      el("span", { class: "quiet" }, fileWords(file))));
-    this.target.append(...boxes);
-    if (!boxes.length) this.target.append(el("p", { class: "quiet" }, `The folder holds no ${argument.files.join(" or ")} yet.`));
     this.others = el("input", { type: "text", attrs: { "aria-label": `${this.text}: other names`, placeholder: "other names, with commas between" } });
     this.lay(this.target, this.others);
+  }
+
+  override renew(state: HostState): void {
+    const { name, files } = this.argument;
+    const chosen = this.value();
+    const boxes = fitting(this.argument, state).map((file) => el("label", {},
+      el("input", { type: "checkbox", value: file.name, attrs: { name } }), ` ${file.name} `, el("span", { class: "quiet" }, fileWords(file))));
+    this.target.replaceChildren(...(boxes.length ? boxes : [el("p", { class: "quiet" }, `The folder holds no ${files.join(" or ")} yet.`)]));
+    if (chosen) this.set(chosen);
   }
 
   override focus(): void {

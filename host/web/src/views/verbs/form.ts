@@ -38,6 +38,11 @@ export class VerbForm {
     showReason(this.reason, reason);
   }
 
+  /** Takes in which files there are now. */
+  renew(state: HostState): void {
+    for (const field of this.fields) field.renew(state);
+  }
+
   fill(given: Given): void {
     for (const field of this.fields) {
       const value = given[field.argument.name];

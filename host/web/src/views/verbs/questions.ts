@@ -93,6 +93,10 @@ export class Questions implements Field {
     this.ask(value);
   }
 
+  renew(): void {
+    // it names no files
+  }
+
   problem(): string {
     return this.wrongRow?.problem ?? "";
   }

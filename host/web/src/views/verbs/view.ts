@@ -10,7 +10,7 @@ import { VerbForm, type Given } from "./form";
 import { JobCard } from "./job_card";
 import { Questions } from "./questions";
 
-type Shown = { readonly element: HTMLElement; readonly card: JobCard; readonly away: HTMLElement; ended: boolean; error: string };
+type Shown = { readonly element: HTMLElement; readonly card: JobCard; readonly foot: HTMLElement; ended: boolean; error: string };
 
 export class DoView implements View {
   readonly name = "Do";
@@ -118,11 +118,18 @@ export class DoView implements View {
   private heard(job: Job): void {
     const shown = this.cards.get(job.id) ?? this.add(job);
     shown.card.show(job);
+    if (!shown.ended && job.state !== "running") this.renew();
     shown.ended = job.state !== "running";
-    shown.away.hidden = !shown.ended;
+    shown.foot.hidden = !shown.ended;
     shown.error = job.state === "failed" ? job.error ?? "" : "";
     this.showAway();
     if (job.id === this.started) this.blame();
+  }
+
+  /** Tells the form which files there are, after a verb that may have written some. */
+  private renew(): void {
+    const { shown } = this;
+    if (shown) void this.session.attempt(async () => shown.form.renew(await this.services.state()));
   }
 
   /** Says beside its field why the verb that was started last has failed. */
@@ -138,8 +145,9 @@ export class DoView implements View {
     });
     const away = button("Put away", () => void this.session.attempt(() => this.services.jobs.putAway(id)), { title: "Take this card away; files stay" });
     const again = button("Change and repeat", () => void this.open(verb, given), { title: `Opens the form of ${verb} as it was filled in` });
-    card.element.append(el("div", { class: "row away" }, again, away));
-    const shown = { element: card.element, card, away, ended: false, error: "" };
+    const foot = el("div", { class: "row away" }, again, away);
+    card.element.append(foot);
+    const shown = { element: card.element, card, foot, ended: false, error: "" };
     this.cards.set(id, shown);
     this.none.remove();
     this.allAway.after(card.element);
