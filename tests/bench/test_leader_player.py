@@ -130,8 +130,9 @@ def test_leads_live_as_quickly_as_a_hand_and_never_jumps_when_the_motors_go_on_o
 
 def test_another_motion_at_work_begins_where_the_leader_is(player: LeaderPlayer, motion: Trajectory) -> None:
     advance(player, START + 0.5, enabled=True)
-    for before in (lambda: None, lambda: player.lead(THERE)):  # from a motion, and from a live hand
-        before()
+    for live in (False, True):  # from a motion, and from a live hand
+        if live:
+            player.lead(THERE)
         advance(player, 0.5, enabled=True)
         player.take_up(motion)
         at = [player.angles]

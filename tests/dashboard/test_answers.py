@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from pathlib import Path
-from xml.etree import ElementTree
 
 import numpy as np
 import pytest
@@ -53,12 +52,11 @@ def test_a_name_never_leads_out_of_the_folder(answers: Answers, name: str) -> No
             ask(name)
 
 
-def test_the_arm_is_told_with_the_limits_of_its_joints(answers: Answers) -> None:
+def test_the_arm_is_told_with_its_lengths_and_the_limits_of_its_joints(answers: Answers) -> None:
     told = answers.describe_arm(None)
     arm = load_arm("default")
     assert [(one["min"], one["max"]) for one in told["joints"]] == [(one.stops.min, one.stops.max) for one in arm.joint]
-    names = {one.get("name") for one in ElementTree.fromstring(told["urdf"]).iter("joint")}
-    assert {one["id"] for one in told["joints"]} <= names
+    assert told["lengths"] == [link.length for link in arm.link]
     assert answers.describe_arm("arm.toml")["name"] == load_arm("worn").name
     assert [one["fixed"] for one in answers.describe_arm("two_joints")["joints"]].count(True) == 2
 

@@ -186,10 +186,12 @@ export class ArmScene {
       [x, y] = [event.clientX, event.clientY];
       leaderControl.take(joint, Math.max(min, Math.min(max, leaderControl.angles[joint]! + DRAG_RAD * moved)));
     });
-    canvas.addEventListener("pointerup", () => {
-      joint = null;
-      this.controls.enabled = true;
-    });
+    for (const end of ["pointerup", "pointercancel"]) {
+      canvas.addEventListener(end, () => {
+        joint = null;
+        this.controls.enabled = true;
+      });
+    }
   }
 
   /** The joint that moves the link under the pointer. */
