@@ -69,8 +69,8 @@ class Person {
   // Joints that are not in use (bits) stay at 0, whatever the motion and the hands want.
   Person(Motion motion, double slice, double start = kStart, unsigned in_use = kAllJoints);
 
-  // Plays another motion: at work, from its first pose on, to which the leader goes as after an enable; else from the next
-  // enable on, and held arms are brought to its first pose within a second.
+  // Plays another motion: at work, from its first pose on, to which the leader goes as after an enable; else from the
+  // next enable on, and held arms are brought to its first pose within a second.
   void take_up(Motion motion);
 
   // Leads to angles (rad), now, whether the motors are on or off, and to others when this is called again. While they
