@@ -20,13 +20,17 @@ import { Hands } from "./hands";
 import { Trial } from "./pulses";
 import { foundTables, motorInWords } from "./result";
 import { Rules } from "./rules";
-import { Walk, type Found, type Step } from "./walk";
-import { AGAIN, FIRST, jointTitle, motorsAsked, poseAsked, poseInWords, SECOND, stepTitle, THIRD } from "./words";
+import { AGAIN, FIRST, SECOND, stepInGroup, stepTitle, THIRD, type Step } from "./step";
+import { Walk, type Found } from "./walk";
+import { jointTitle, motorsAsked, poseAsked, poseInWords } from "./words";
 
 const DEGREE = Math.PI / 180;
 const SECOND_DEG = [60, 50, -45, 40]; // far enough from 0 at every joint
 const THIRD_RAD = [-35, -20, 30, -40].map((angle) => DEGREE * angle); // of the bench's hands
 const OFF = "Calibrate with the motors off; press Stop first.";
+const BY_HANDS = "This arm is simulated, and its hands can do each step for you. First break something in Bench, such as a reversed potentiometer "
+  + "or motor: it is found here and put right.";
+const STOPPED = "Stop was pressed; the other motors were not tried.";
 const NO_RULES = "This page came without the rules of a calibration; run `make setup` and reload it, or `greywhale calibrate` in a terminal.";
 
 /** A button of a step, and the reason why it cannot be pressed now. */
@@ -171,8 +175,7 @@ export class CalibrateView implements View {
     this.showPanel("By hand, with the motors off",
       said || "Turn each joint of both arms to its ends, hold four poses, then each motor gets some weak pulses: five minutes. Nothing is stored before you agree.", [
         el("label", { class: "row" }, "Second pose", second), length,
-        el("p", { class: "quiet" }, this.hands ? "This arm is simulated, and its hands can do each step for you. First break something in Bench, such as a reversed potentiometer or motor: it is found here and put right."
-          : "Only joints in use are asked for; `greywhale calibrate --joints` in a terminal changes which those are."),
+        el("p", { class: "quiet" }, this.hands ? BY_HANDS : "Only joints in use are asked for; `greywhale calibrate --joints` in a terminal changes which those are."),
       ], [
         this.action("Begin", () => this.begin(second.value === "same" ? DEGREE * Number(track.value) : null), "Begin with the first sweep", true),
         ...(this.stored ? [this.action("Undo", () => this.undo(), "Run and store the parameters from before this calibration")] : []),
@@ -335,7 +338,7 @@ export class CalibrateView implements View {
           const { before, after } = await walk!.found();
           const stops = session.stopsAsked;
           walk!.motors.set(joint, await new Trial(session, rules!, before, after, joint).run());
-          if (session.stopsAsked > stops + 1) throw new LinkError("Stop was pressed; the other motors were not tried."); // one stop is the trial's own
+          if (session.stopsAsked > stops + 1) throw new LinkError(STOPPED); // one stop is the trial's own
         }
       });
     } finally {
@@ -377,10 +380,4 @@ export class CalibrateView implements View {
     this.stored = null;
     this.showBeginning("The parameters from before run and are stored again.");
   }
-}
-
-/** The group of a step, and its name there. */
-function stepInGroup(step: Step): readonly [group: string, short: string] {
-  if (step.kind === "sweep") return [`${step.pot < JOINTS ? "Leader" : "Follower"} sweeps`, String(step.pot % JOINTS)];
-  return step.kind === "pose" ? ["Poses", ["First", "Second", "Again", "Third"][step.place]!] : ["Then", upperFirst(step.kind)];
 }

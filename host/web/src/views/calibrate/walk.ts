@@ -6,13 +6,7 @@ import { jointsInUse, POTS, potsOf } from "../../session/pots";
 import { JOINTS, traceOf } from "../../session/samples";
 import type { Session } from "../../session/session";
 import type { Calibration, Motor, Pose, Rules, Sweep } from "./rules";
-import { AGAIN, FIRST, SECOND, stepTitle, THIRD } from "./words";
-
-export type Step =
-  | { readonly kind: "sweep"; readonly pot: number }
-  | { readonly kind: "pose"; readonly place: number }
-  | { readonly kind: "motors" }
-  | { readonly kind: "store" };
+import { AGAIN, FIRST, SECOND, stepTitle, THIRD, type Step } from "./step";
 
 const HELD_TICKS = 500; // that a pose is looked at
 

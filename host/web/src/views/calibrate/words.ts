@@ -1,28 +1,16 @@
-// What the page asks of a person in each step, and what it calls them.
+// What the page asks of a person in each step.
 
 import { fixed } from "../../files/words";
 import { potName, upperFirst } from "../../link/refusal";
 import { JOINT_NAMES, JOINTS } from "../../session/samples";
 import type { Rules } from "./rules";
-import type { Step } from "./walk";
+import { AGAIN, FIRST, THIRD } from "./step";
 
-export const [FIRST, SECOND, AGAIN, THIRD] = [0, 1, 2, 3] as const;
-const POSES = ["first pose", "second pose", "first pose again", "third pose"] as const;
 const WHY = ["", "", " A potentiometer that slips on its shaft shows.", " It shows how far the arms are apart."] as const;
 
 /** Leader joint 1, shoulder pitch. */
 export function jointTitle(pot: number): string {
   return `${upperFirst(potName(pot)).replace(" potentiometer ", " joint ")}, ${JOINT_NAMES[pot % JOINTS]!}`;
-}
-
-/** A step by its name, wherever it is spoken of. */
-export function stepTitle(step: Step): string {
-  switch (step.kind) {
-    case "sweep": return `sweep of ${potName(step.pot).replace(" potentiometer ", " joint ")}`;
-    case "pose": return POSES[step.place]!;
-    case "motors": return "motors";
-    case "store": return "store";
-  }
 }
 
 /** Joints at angles in rad, as a person reads them. */

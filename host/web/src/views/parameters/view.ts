@@ -160,7 +160,8 @@ export class ParametersView implements View {
   private whatIsKept(): string {
     const { parameters, stored, storedCrc, storesNothing } = this.session;
     if (!parameters) return "";
-    if (!stored) return storedCrc === null ? "What the board has stored is not known before it starts or stores." : "The board has stored another set than the one that runs.";
+    if (!stored && storedCrc !== null) return "The board has stored another set than the one that runs.";
+    if (!stored) return "What the board has stored is not known before it starts or stores.";
     const count = stored.filter((value, index) => value !== parameters[index]).length;
     if (!count) return storesNothing ? "Nothing is stored: the board starts with what runs, its defaults." : "The board has stored what runs.";
     return `${count === 1 ? "One parameter is" : `${count} parameters are`} not stored: the board starts with ${storesNothing ? "its defaults" : "what it has stored"}.`;
