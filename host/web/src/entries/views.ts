@@ -59,7 +59,7 @@ export class Views {
     const { session, services, bench, port, predictor, tuner, calibration } = sources;
     this.countdown = new Countdown(session, services?.jobs);
     this.controller = new ControllerView(session, predictor, tuner, services);
-    this.verbs = services && new DoView(session, services);
+    this.verbs = services && new DoView(session, services, (verb, given) => this.openVerb(verb, given));
     const arm = new ArmPicture(session, sources.arm);
     const leaderControl = bench && new LeaderControl(bench, session);
     if (leaderControl) arm.leadBy(leaderControl);

@@ -8,6 +8,7 @@ import type { Session } from "../../session/session";
 import { makeField } from "./fields";
 import { VerbForm, type Given } from "./form";
 import { JobCard } from "./job_card";
+import type { OpenVerb } from "./telling";
 import { Questions } from "./questions";
 
 type Shown = { readonly element: HTMLElement; readonly card: JobCard; readonly foot: HTMLElement; ended: boolean; error: string };
@@ -29,7 +30,8 @@ export class DoView implements View {
   private turn = 0;
   private started = ""; // the id of the job that the form has started
 
-  constructor(private readonly session: Session, private readonly services: Services) {
+  /** `next` opens what comes after a verb. */
+  constructor(private readonly session: Session, private readonly services: Services, private readonly next: OpenVerb) {
     this.jobs.append(this.none, this.allAway);
     this.element = el("div", { class: "do" },
       el("section", { class: "card" }, el("h2", {}, "What shall greywhale do?"), this.reading, this.list), this.form, this.jobs);
@@ -140,7 +142,7 @@ export class DoView implements View {
 
   private add({ id, verb, arguments: given, state }: Job): Shown {
     const card = new JobCard(id, verb, this.services.jobs, (act) => void this.session.attempt(act), {
-      open: (next, filled) => void this.open(next, filled),
+      open: this.next,
       log: (file) => this.services.log(file),
     });
     const away = button("Put away", () => void this.session.attempt(() => this.services.jobs.putAway(id)), { title: "Take this card away; files stay" });
