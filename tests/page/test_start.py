@@ -52,7 +52,9 @@ def test_the_way_to_ones_own_arm_says_how_far_a_board_is(visitor: tuple[Page, St
     expect(page.get_by_text("What runs is stored.")).to_be_visible()
     press(page, "Start")
     require_marks(page, "Connect", "Flash", "Supply and driver")
-    press(page, "Next: Let it look", "Start doctor", "Start")
+    press(page, "Next: Let it look")
+    page.locator(".verb-form").get_by_role("button", name="Start").click()
+    press(page, "Start")
     expect(step(page, "Doctor")).to_contain_text("It has found something to mend.")
     expect(step(page, "Doctor")).to_contain_text("Mend 1 finding before the arm moves")  # a stage's port is none
     require_marks(page, "Connect", "Flash", "Supply and driver")
@@ -73,7 +75,7 @@ def test_learning_goes_on_where_the_folder_is_and_a_reload_stays_in_its_view(vis
     learn.locator("summary").click()
     expect(learn.locator(".told")).to_contain_text("Here are: 1 recording.")
     press(page, "Step by step: identify")
-    expect(page.locator(".verb-form input[type=text]").first).to_have_value("fit.csv")
+    expect(page.locator(".verb-form [name=logs][value='fit.csv']")).to_be_checked()
     page.reload()
     expect(page.locator("nav button[aria-current]")).to_have_text("Do")
 

@@ -66,7 +66,7 @@ def opened(view: str) -> pytest.MarkDecorator:
 def test_a_visitor_sees_an_arm_that_follows_and_what_needs_a_host_is_not_there(visited: Page) -> None:
     views = ["Start", "Live", "Controller", "Parameters", "Calibrate", "Bench"]
     expect(visited.locator("nav button")).to_have_text(views)
-    expect(visited.get_by_text("an Arduino Mega and an arm, simulated in this page")).to_be_visible()
+    expect(visited.get_by_text("an Arduino Mega and an arm, simulated in this page", exact=True)).to_be_visible()
     require_things_to_try(visited)
     visited.get_by_role("button", name="Live").click()
     visited.wait_for_function(

@@ -29,7 +29,7 @@ def test_the_page_says_what_is_missing_and_a_board_at_a_port_can_still_be_chosen
 ) -> None:
     context.route("**/worker.js", answer)
     with stages.visit(context, site) as visit:
-        told = visit.page.locator(".empty")
+        told = visit.page.locator("details.way-step[open]")
         expect(told).to_contain_text("does not run WebAssembly, of which the simulated bench is made")
         expect(told).to_contain_text("A board at a port needs none")
         visit.page.get_by_label("Board", exact=True).select_option("port")

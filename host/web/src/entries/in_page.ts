@@ -70,8 +70,9 @@ function showPort({ data, worker, tuner, calibration, firmware, docs }: Parts): 
   const views = new Views({
     session, arm: { arm: async () => data.description }, services: null, bench: null, flashed: null, port,
     predictor: new PagePredictor(tuner, NOT_YOURS, true), tuner: new PageTuner(tuner), calibration, docs,
+    remedy: "Plug the board in by USB and connect it in the view Port.",
   });
-  offerOthers(views.open(["Plug the board in by USB and connect it in the view Port."], fragment().get("view")), docs);
+  offerOthers(views.open(fragment().get("view")), docs);
 }
 
 /** Other boards, and what there is to read. */
@@ -86,6 +87,7 @@ async function showBench({ code, data, worker, tuner, calibration, firmware, doc
   const views = new Views({
     session, arm: { arm: async () => data.description }, services: null, bench: board, flashed: board, port: null,
     predictor: new PagePredictor(tuner, THE_BENCHS), tuner: new PageTuner(tuner), calibration, docs,
+    remedy: "The firmware of a real board and a simulated arm run inside this page; they need a browser with WebAssembly. A board at a port needs none: choose it in the list Board.",
   });
   const { controller } = views;
   let state: PageState | null = null;
@@ -96,9 +98,7 @@ async function showBench({ code, data, worker, tuner, calibration, firmware, doc
     problem = sentenceOf(error);
   }
   if (state) controller.showJoint(state.joint);
-  const shell = views.open([
-    "The firmware of a real board and a simulated arm run inside this page; they need a browser with WebAssembly. A board at a port needs none: choose it in the list Board.",
-  ], state?.view ?? null);
+  const shell = views.open(state?.view ?? null);
   const copy = button("Copy link", () => void session.attempt(async () => copyLink(session, {
     view: shell.shown, joint: controller.shownJoint, ...board.condition(session.samples.newest("leader")), raw: await session.readParameters(),
   })), { title: "An address that opens this page as it is now", disabled: true });

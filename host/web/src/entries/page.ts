@@ -2,7 +2,6 @@
 // address names (#view=live).
 
 import "../page.css";
-import { el } from "../parts/dom";
 import { startTheme } from "../parts/theme";
 import { Session } from "../session/session";
 import { findAccess, type Access } from "../sources/access";
@@ -21,7 +20,7 @@ async function begin({ token, sentence }: Access): Promise<void> {
   const session = new Session(board);
   if (!token) { // no board would help
     const live = new LiveView(session);
-    new Shell(session, [live], [], live, () => undefined);
+    new Shell(session, [live], "", live, () => undefined);
     return;
   }
   const services = new HostServices(token, () => board.page);
@@ -30,11 +29,9 @@ async function begin({ token, sentence }: Access): Promise<void> {
   const views = new Views({
     session, arm: services, services, bench: sim ? services.bench : null, flashed: null, port: null,
     predictor: services.predictor, tuner: services.tuner, calibration, docs: null,
+    remedy: "Plug the board in by USB: this page takes it by itself. Without a board, start `greywhale dashboard --sim`: it brings a simulated arm with the real firmware.",
   });
-  views.open([
-    "Plug the board in by USB: this page takes it by itself. Without a board, start ", el("code", {}, "greywhale dashboard --sim"),
-    ": it brings a simulated arm with the real firmware.",
-  ], asked);
+  views.open(asked);
 }
 
 /** The rules of a calibration, a file beside the page. */

@@ -44,6 +44,8 @@ export type Sources = {
   readonly calibration: () => Promise<ArrayBuffer>;
   /** The folder of the documentation. */
   readonly docs: string | null;
+  /** A sentence or two on what to do where no board is there. */
+  readonly remedy: string;
 };
 
 /** All views of a page; `show` brings one of them to the front, once there is a frame around them. */
@@ -76,11 +78,11 @@ export class Views {
   }
 
   /** Puts the frame around the views: the view `front` first, else the one that this tab showed last. */
-  open(remedy: readonly (Node | string)[], front: string | null): Shell {
+  open(front: string | null): Shell {
     const { session } = this.sources;
     document.body.append(this.countdown.element);
     const wanted = front ?? tabStore.read(SHOWN);
-    this.shell = new Shell(session, this.all, remedy, this.named(wanted), (view) => tabStore.write(SHOWN, view.name));
+    this.shell = new Shell(session, this.all, this.sources.remedy, this.named(wanted), (view) => tabStore.write(SHOWN, view.name));
     return this.shell;
   }
 
@@ -107,6 +109,7 @@ export class Views {
       show: (view) => this.show(view),
       open: services && ((verb, given) => this.openVerb(verb, given)),
       connectIn: port ? "Port" : "", flashIn: port ? "Port" : flashed ? "Bench" : "", practice: bench !== null,
+      remedy: this.sources.remedy,
     };
   }
 

@@ -32,7 +32,7 @@ export class Shell {
 
   /** `remedy` says what to do where no board is there; `front` is the view to begin with, `shows` hears of each one. */
   constructor(
-    private readonly session: Session, views: readonly View[], remedy: readonly (Node | string)[], front: View,
+    private readonly session: Session, views: readonly View[], remedy: string, front: View,
     private readonly shows: (view: View) => void,
   ) {
     this.front = front;
@@ -41,7 +41,7 @@ export class Shell {
     this.notice.append(this.noticeText, button("×", () => { this.notice.hidden = true; }, {
       attrs: { "aria-label": "Close this notice" },
     }));
-    this.empty.append(el("h2", {}, "No board"), this.emptyText, el("p", {}, ...remedy));
+    this.empty.append(el("h2", {}, "No board"), this.emptyText, el("p", {}, remedy));
     const theme = button("", switchTheme, { class: "theme" });
     const nameTheme = (): void => setText(theme, isDark() ? "Light" : "Dark");
     themeChanged.on(nameTheme);

@@ -14,6 +14,8 @@ export type Paths = {
   readonly flashIn: string;
   /** True with a simulated arm: then the steps are the practice for a real one. */
   readonly practice: boolean;
+  /** A sentence or two on what to do where no board is there. */
+  readonly remedy: string;
 };
 
 /** How far a step is: done is null where nobody can tell. */
@@ -52,11 +54,10 @@ function view({ show }: Paths, label: string, name: string): readonly Action[] {
 }
 
 function connect({ session }: Facts, paths: Paths): Step {
-  const byHand = paths.connectIn ? `Plug the board in by USB, and choose its port in ${paths.connectIn}.` : "Plug the board in by USB: this page takes it by itself.";
   return {
     title: "Connect",
-    about: paths.practice ? "A simulated board and arm are there to practise on; every step is the same on a real one." : byHand,
-    failed: "Take another USB cable, for many only charge; close other programs that use the port; on Linux `greywhale doctor` names a missing permission.",
+    about: paths.practice ? "A simulated board and arm are there to practise on; every step is the same on a real one." : paths.remedy,
+    failed: paths.practice ? paths.remedy : "Take another USB cable, for many only charge; close other programs that use the port; on Linux `greywhale doctor` names a missing permission.",
     more: ["your-arm.html#first-flash-and-a-look", "First flash, and a look"],
     verbs: [],
     look: () => {

@@ -32,6 +32,11 @@ export class VerbForm {
     });
   }
 
+  /** Takes a person to its start, for all that it needs is filled in. */
+  focus(): void {
+    this.start.focus();
+  }
+
   /** Takes no start as long as there is a reason. */
   refuse(reason: string): void {
     grey(this.start, reason, "");

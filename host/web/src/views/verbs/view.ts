@@ -62,6 +62,7 @@ export class DoView implements View {
       form.fill(given);
       this.showReason();
       this.form.scrollIntoView({ block: "nearest" });
+      if (Object.keys(given).length) form.focus();
     });
   }
 
