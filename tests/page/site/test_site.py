@@ -79,6 +79,7 @@ def test_a_visitor_sees_an_arm_that_follows_and_what_needs_a_host_is_not_there(v
     expect(visited.get_by_role("button", name="Hold still")).to_be_visible()
     expect(visited.get_by_label("Speed of time, ×")).to_be_visible()
     expect(visited.get_by_label("Recorded motion")).to_have_count(0)
+    visited.get_by_text("Play a recording").click()
     visited.get_by_label("A recording (CSV)").set_input_files(
         {"name": "hand.csv", "mimeType": "text/csv", "buffer": RECORDING.encode()}
     )

@@ -4,12 +4,12 @@ import { button, el, select, setText, svg } from "../../parts/dom";
 import { JOINT_NAMES, JOINTS } from "../../session/samples";
 import type { LeaderControl } from "./leader_control";
 import { angleAt, pointed, shareOf, type Limits } from "./limits";
+import { seldom } from "./seldom";
 import { Stroke } from "./stroke";
 
 const COLUMNS = 120;
 const WIDTH = 480;
 const HEIGHT = 160;
-const TALL = "(min-height: 900px)"; // a screen that has room for what is seldom used
 const DURATIONS_S = [2, 4, 8, 16];
 
 export class DrawnMotion {
@@ -31,7 +31,7 @@ export class DrawnMotion {
     const duration = select("Duration", DURATIONS_S.map((s) => [String(s), `${s} s`] as const),
       (chosen) => { this.durationS = Number(chosen); });
     duration.value = String(this.durationS);
-    this.element = el("details", { class: "card", ...(matchMedia(TALL).matches ? { attrs: { open: "" } } : {}) }, el("summary", {}, "Draw a motion"),
+    this.element = seldom("Draw a motion",
       el("div", { class: "row" }, joint, duration, this.play, button("Clear", () => this.clear())),
       this.picture,
       el("p", { class: "quiet" }, "Drag from left to right; the highest and lowest angles are the leader's limits."));

@@ -6,6 +6,7 @@ import { sentenceOf } from "../../parts/sentence";
 import type { Session } from "../../session/session";
 import type { LeaderControl } from "./leader_control";
 import type { Limits } from "./limits";
+import { seldom } from "./seldom";
 
 export class Played {
   readonly element: HTMLElement;
@@ -14,14 +15,14 @@ export class Played {
   private begunMs: number | null = null;
 
   constructor(private readonly session: Session, private readonly leaderControl: LeaderControl, private readonly limits: Limits) {
-    this.element = el("div", { class: "row" }, fileField("A recording (CSV)", ".csv", (file) => {
+    this.element = seldom("Play a recording", el("div", { class: "row" }, fileField("A recording (CSV)", ".csv", (file) => {
       this.recording = null;
       this.stop();
       void file?.then(async (given) => {
         this.recording = await readRecording(given, () => new Promise((resolve) => setTimeout(resolve)));
         this.show();
       }).catch((error: unknown) => session.tell(sentenceOf(error)));
-    }), this.play);
+    }), this.play));
   }
 
   /** Another motion leads now. */

@@ -75,7 +75,7 @@ export class BenchView implements View {
     if (!this.services) this.played = new Played(this.session, this.leaderControl, controls.leader);
     this.faults = new Faults(this.session, this.bench, controls.faults);
     this.controls.replaceChildren(
-      el("div", { class: "side" }, this.lead.element, this.motions(controls), this.drawn.element),
+      el("div", { class: "side" }, this.lead.element, this.motions(controls), this.drawn.element, ...(this.played ? [this.played.element] : [])),
       el("div", { class: "side" }, this.faults.element, this.sizes(controls), ...(this.firmware ? [this.firmware.element] : [])));
   }
 
@@ -95,8 +95,7 @@ export class BenchView implements View {
     return el("section", { class: "card" }, el("h2", {}, "Let another hand lead"),
       el("div", { class: "row" },
         ...motions.map(({ name, title }) => button(title, () => void lead(name), { title: "From where the leader is, at once" })),
-        button("Hold still", () => void lead("hold")), ...(this.services ? [this.recorded] : [])),
-      ...(this.played ? [this.played.element] : []));
+        button("Hold still", () => void lead("hold")), ...(this.services ? [this.recorded] : [])));
   }
 
   private sizes(controls: BenchControls): HTMLElement {
