@@ -20,6 +20,7 @@ def test_a_hand_on_the_page_leads_and_the_arm_follows(page: Page, stage: Stage) 
     wanted = 0.5 / Sample.LSB["leader"]
     stage.wait_for(lambda: abs(stage.newest().leader[0] - wanted) < 100)
     stage.wait_for(lambda: abs(stage.newest().follower[0] - wanted) < 500)
+    page.locator(".pad").first.scroll_into_view_if_needed()
     pad = page.locator(".pad").first.bounding_box()
     assert pad is not None
     page.mouse.move(pad["x"] + pad["width"] / 2, pad["y"] + pad["height"] / 2)
