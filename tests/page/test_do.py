@@ -60,7 +60,7 @@ def begin(desk: Page, verb: str, **given: str | bool) -> Locator:
             field.select_option(str(value))
         else:
             field.fill(str(value))
-    start = form.get_by_role("button", name="Start", exact=True)
+    start = form.get_by_role("button", name=f"Start {verb}", exact=True)
     cards = desk.locator(".job").filter(has=desk.get_by_role("heading", name=verb, exact=True))
     before = cards.count()
     start.click()
@@ -122,7 +122,7 @@ def test_verbs_end_with_their_result_or_their_sentence(search: Locator, desk: Pa
     expect(picture.locator("polyline")).to_have_count(2)
     replayed.get_by_role("button", name="Measure how well it followed").click()
     expect(desk.locator("[name='logs'][value='second.csv']")).to_be_checked()
-    expect(desk.get_by_role("button", name="Start", exact=True).last).to_be_focused()
+    expect(desk.get_by_role("button", name="Start evaluate")).to_be_focused()
     led = read_log(folder / "second.csv")
     assert led.leader[-1, 0] == pytest.approx(0.2, abs=0.001)
     assert set(np.diff(np.round(1000 * led.time))) == {1}
@@ -181,7 +181,7 @@ def test_a_form_says_beside_its_field_what_is_wrong(desk: Page, stage: Stage) ->
     form = form_of(desk, "record")
     seconds = form.get_by_label("Time to record, s", exact=True)
     seconds.fill("a while")
-    form.get_by_role("button", name="Start", exact=True).click()
+    form.get_by_role("button", name="Start record", exact=True).click()
     expect(form.get_by_role("alert")).to_have_text('Time to record is "a while", but it must be a number.')
     expect(seconds).to_be_focused()
     assert [facts["id"] for facts in stage.jobs.facts()] == before
@@ -205,7 +205,7 @@ def test_an_arm_is_described_by_answers_to_its_questions(desk: Page, stage: Stag
     form.locator("[name='link[1].section']").select_option("bar")
     form.locator("[name='link[1].height_mm']").fill("12")
     expect(form.get_by_role("alert")).to_have_text("Its length: that is no number.")
-    start = form.get_by_role("button", name="Start", exact=True)
+    start = form.get_by_role("button", name="Start arm new", exact=True)
     start.click()
     expect(length).to_be_focused()
     length.fill("15 cm")
@@ -274,7 +274,7 @@ def test_a_verb_that_cannot_start_says_why_as_long_as_that_holds(
         watcher.page.get_by_role("button", name="Do", exact=True).click()
         reason = watcher.page.locator(".verb-form .reason")
         for verb, needs in (("record", True), ("evaluate", False), ("flash", True)):
-            start = form_of(watcher.page, verb).get_by_role("button", name="Start", exact=True)
+            start = form_of(watcher.page, verb).get_by_role("button", name=f"Start {verb}", exact=True)
             expect(start).to_be_disabled() if needs else expect(start).to_be_enabled()
             expect(reason).to_have_text("Another page drives this arm; let go there first." if needs else "")
         desk.get_by_role("button", name="Let go").click()

@@ -33,5 +33,6 @@ def test_the_page_says_what_is_missing_and_a_board_at_a_port_can_still_be_chosen
         expect(told).to_contain_text("does not run WebAssembly, of which the simulated bench is made")
         expect(told).to_contain_text("A board at a port needs none")
         visit.page.get_by_label("Board", exact=True).select_option("port")
+        visit.page.get_by_role("button", name="Choose the port").click()
         expect(visit.page.get_by_role("heading", name="Board at a port")).to_be_visible()
     context.unroute("**/worker.js", answer)

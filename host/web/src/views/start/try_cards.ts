@@ -24,7 +24,7 @@ type Words = {
 
 const PULL: Words = {
   title: "Pull the leader",
-  hint: "Drag the ghost in the picture, or let this button pull its shoulder.",
+  hint: "Drag the arm in the picture, or let this button pull its shoulder.",
   act: "Pull the shoulder",
   back: "Let it reach on",
   happened: "The board compares the leader's potentiometers with the follower's 1000 times a second, and drives each motor by the difference. So the follower goes wherever the leader is pulled.",

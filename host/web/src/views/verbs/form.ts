@@ -12,10 +12,11 @@ const OPTION = /--[a-z][a-z-]*/g;
 export class VerbForm {
   readonly element = el("form", { class: "verb-form", attrs: { novalidate: "" } });
   private readonly more = el("details", {}, el("summary", {}, "More"));
-  private readonly start = el("button", { type: "submit", class: "primary" }, "Start");
+  private readonly start = el("button", { type: "submit", class: "primary" });
   private readonly reason = el("p", { class: "reason", hidden: true, attrs: { role: "status" } });
 
   constructor(verb: Verb, { folder }: HostState, private readonly fields: readonly Field[], start: (given: Given) => void) {
+    this.start.append(`Start ${verb.verb}`);
     reasonFor(this.reason, this.start);
     const first = fields.filter(({ argument }) => argument.first);
     const others = fields.filter(({ argument }) => !argument.first);
