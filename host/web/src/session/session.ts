@@ -214,6 +214,11 @@ export class Session {
     await this.askStatus();
   }
 
+  /** The board's tick by its own word; samples of it may still be on their way. */
+  async tick(): Promise<number> {
+    return (await this.client.ask(StatusRequest, {})).tick;
+  }
+
   async clearFault(): Promise<void> {
     await this.client.ask(ClearFaultRequest, {});
     await this.askStatus();
@@ -355,6 +360,7 @@ export class Session {
 
   private async fetchHistory(from: number | null): Promise<void> {
     const before = this.samples.end;
+    console.log(`HIST begin from ${from} last ${this.samples.lastTick} waiting ${this.waiting?.length} t ${performance.now().toFixed(0)}`);
     try {
       const frames = await this.board.history(from);
       new FrameDecoder().feed(frames, ({ type, payload }) => {
@@ -362,6 +368,7 @@ export class Session {
       });
       if (from === null) this.samples.lost = 0;
     } finally {
+      console.log(`HIST end got ${this.samples.end - before} last ${this.samples.lastTick} waiting ${this.waiting?.length} first waiting ${this.waiting?.length ? tickOf(this.waiting[0]!) : 0} t ${performance.now().toFixed(0)}`);
       this.takeWaiting(this.samples.end > before);
     }
   }

@@ -4,7 +4,7 @@ import type { Bench, HandsWish } from "../../session/services";
 import type { Session } from "../../session/session";
 
 const LOOK_MS = 50;
-const REST_TICKS = 700; // after the hands are there: a pose is looked at for 500, and samples are on their way
+const REST_TICKS = 550; // after the hands are there: a pose is looked at for 500
 
 export class Hands {
   private asked = 0; // the number of the last wish
@@ -14,11 +14,13 @@ export class Hands {
   /** Lets them do it; false where somebody has gone on without them. */
   async do(wish: HandsWish): Promise<boolean> {
     const number = ++this.asked;
-    const { samples } = this.session;
+    const { session, session: { samples } } = this;
+    const before = samples.lastTick;
     const takes = 1000 * await this.bench.hands(wish) + REST_TICKS;
-    const begin = samples.lastTime;
-    while (samples.lastTime < begin + takes) {
-      if (number !== this.asked || !this.session.link.open) return false;
+    const end = await session.tick() + takes;
+    while (samples.lastTick < end) {
+      const restarted = samples.lastTick < before;
+      if (number !== this.asked || restarted || !session.link.open) return false;
       await new Promise((settle) => setTimeout(settle, LOOK_MS));
     }
     return number === this.asked;

@@ -39,12 +39,12 @@ export class Trial {
     await session.apply(set);
     const from = samples.end;
     await this.until(patienceMs, () => this.isStill(from, stillMs, still), "The follower does not come to rest; lay it down, and begin anew.");
-    const [begin, tick] = [samples.end, samples.lastTick];
-    const restarted = (): boolean => samples.lastTick < tick;
+    const [begin, before] = [samples.end, samples.lastTick];
+    const restarted = (): boolean => samples.lastTick < before;
     let reference: readonly number[] = [];
     try {
       ({ reference } = await session.lead(leaseMs, ALL.map((other) => (other === joint ? way * step : 0))));
-      await this.until(patienceMs, () => restarted() || samples.lastTick - tick >= leaseMs + settleMs, "The board sends no samples; check its cable, and begin anew.");
+      await this.until(patienceMs, () => restarted() || this.sinceOn(begin) >= leaseMs + settleMs, "The board sends no samples; check its cable, and begin anew.");
     } catch (error) {
       if (!restarted()) throw error;
     }
@@ -54,7 +54,7 @@ export class Trial {
       await session.apply(set);
       await session.clearFault();
     }
-    return ALL.map((other) => COUNT.follower * this.angles(begin, other).map((angle) => angle - reference[other]!)
+    return ALL.map((other) => COUNT.follower * this.angles(this.firstOn(begin), other).map((angle) => angle - reference[other]!)
       .reduce((most, one) => (Math.abs(one) > Math.abs(most) ? one : most)));
   }
 
@@ -72,6 +72,22 @@ export class Trial {
       if (waited > patienceMs) throw new LinkError(sentence);
       await new Promise((settle) => setTimeout(settle, LOOK_MS));
     }
+  }
+
+  /** The first sample with the motors on, from a number on: what came before shows the arm as it was before the pulse. */
+  private firstOn(from: number): number {
+    const { samples } = this.session;
+    const isOn = (number: number): boolean => [State.is.soft_start, State.is.following].some((one) => one === samples.state[number % samples.capacity]);
+    let number = Math.max(from, samples.first);
+    while (number < samples.end && !isOn(number)) number++;
+    return number;
+  }
+
+  /** The ticks that have passed since then; 0 before. */
+  private sinceOn(from: number): number {
+    const { samples } = this.session;
+    const on = this.firstOn(from);
+    return on < samples.end ? samples.lastTime - samples.timeOf(on) : 0;
   }
 
   private angles(from: number, joint: number): number[] {

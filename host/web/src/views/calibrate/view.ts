@@ -46,6 +46,7 @@ export class CalibrateView implements View {
   private mends = false; // a sweep with a mistake is to be done again
   private busy = ""; // what is under way, in a sentence
   private stored: Found | null = null; // to be undone
+  private pressed = ""; // the label of the last button
   private actions: Action[] = [];
   private readonly hands: Hands | null;
   private readonly bars: PotBars;
@@ -79,6 +80,7 @@ export class CalibrateView implements View {
   }
 
   leave(): void {
+    this.pressed = "";
     this.hands?.letGo();
   }
 
@@ -103,20 +105,29 @@ export class CalibrateView implements View {
     this.reason.hidden = !reason;
   }
 
-  /** Shows a step; a keyboard stays where it was, at the button that goes on. */
   private showPanel(title: string, asked: string, body: readonly HTMLElement[], actions: readonly Action[]): void {
-    const focused = this.row.contains(document.activeElement) || this.list.contains(document.activeElement);
     setText(this.title, title);
     setText(this.asked, asked);
     this.body.replaceChildren(...body);
     this.row.replaceChildren(...actions.map(({ button: one }) => one));
     this.actions = [...actions, ...this.stepButtons()];
     this.refresh();
-    if (focused) actions[0]!.button.focus();
+    this.keepFocus();
+  }
+
+  /** Whoever goes on by the keyboard stays at the button that was pressed, or its like in the next step, else at the first. */
+  private keepFocus(): void {
+    if (document.activeElement !== document.body || !this.pressed) return; // a button that is gone, or grey, has no focus
+    const like = this.actions.find(({ button: one }) => one.textContent === this.pressed && this.row.contains(one));
+    (like ?? this.actions[0])?.button.focus();
   }
 
   private action(label: string, act: () => Promise<void>, usual: string, primary = false, whyNot = (): string => this.whyNot()): Action {
-    return { button: button(label, () => void this.attempt(act), primary ? { class: "primary" } : {}), whyNot, usual };
+    const press = (): void => {
+      this.pressed = label;
+      void this.attempt(act);
+    };
+    return { button: button(label, press, primary ? { class: "primary" } : {}), whyNot, usual };
   }
 
   /** Runs what a person asked for; an error stands in the step. */
@@ -128,6 +139,7 @@ export class CalibrateView implements View {
       setText(this.problem, sentenceOf(error));
     }
     this.refresh();
+    this.keepFocus();
   }
 
   /** Does something during which nothing else can be done. */
@@ -333,12 +345,13 @@ export class CalibrateView implements View {
     if (!await this.countdown.before("The arm is about to get pulses of its motors")) throw new LinkError("The motors were not tried: Stop was pressed, or the page was hidden.");
     try {
       await this.alone("The motors get pulses; Stop ends them.", async () => {
+        let stops = session.stopsAsked; // with those by which a trial itself ends
         for (const joint of walk!.joints.filter((one) => !walk!.motors.has(one))) {
           setText(this.asked, `Motor ${walk!.joints.indexOf(joint) + 1} of ${walk!.joints.length}, joint ${joint}, ${JOINT_NAMES[joint]!}, gets pulses.`);
           const { before, after } = await walk!.found();
-          const stops = session.stopsAsked;
+          if (session.stopsAsked !== stops) throw new LinkError(STOPPED);
           walk!.motors.set(joint, await new Trial(session, rules!, before, after, joint).run());
-          if (session.stopsAsked > stops + 1) throw new LinkError(STOPPED); // one stop is the trial's own
+          stops++;
         }
       });
     } finally {
