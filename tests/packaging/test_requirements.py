@@ -15,7 +15,7 @@ def pinned(*files: Path) -> dict[str, list[str]]:
     found: dict[str, list[str]] = {}
     lines = [
         line
-        for file in files or (lock.RUN, lock.PAGE, lock.COMPILER, lock.CHECKS)
+        for file in files or (lock.RUN, lock.PAGE, lock.DOCS, lock.COMPILER, lock.CHECKS)
         for line in file.read_text(encoding="utf-8").splitlines()
     ]
     for line in lines:
@@ -32,8 +32,8 @@ def pinned(*files: Path) -> dict[str, list[str]]:
 
 @pytest.mark.parametrize(
     ("file", "least"),
-    [(lock.RUN, 10), (lock.PAGE, 1), (lock.COMPILER, 2), (lock.CHECKS, 10), (lock.ORACLES, 10)],
-    ids=["run", "page", "compiler", "checks", "oracles"],
+    [(lock.RUN, 10), (lock.PAGE, 1), (lock.DOCS, 4), (lock.COMPILER, 2), (lock.CHECKS, 10), (lock.ORACLES, 10)],
+    ids=["run", "page", "docs", "compiler", "checks", "oracles"],
 )
 def test_every_package_has_digests(file: Path, least: int) -> None:
     assert len(pinned(file)) >= least
@@ -47,6 +47,7 @@ def test_the_outside_references_come_beside_the_projects_own_packages() -> None:
 
 
 def test_all_that_is_asked_for_is_pinned() -> None:
-    groups = [(lock.group("page"), [lock.PAGE]), (lock.group("compiler"), [lock.COMPILER])]
+    files_of = {"page": [lock.PAGE], "docs": [lock.RUN, lock.DOCS], "compiler": [lock.COMPILER]}
+    groups = [(lock.group(name), files) for name, files in files_of.items()]
     for asked, files in ((lock.build(), [lock.RUN]), *groups, (lock.wanted(), [])):
         assert {lock.name_of(name) for name in asked} - set(pinned(*files)) == set()
