@@ -30,6 +30,7 @@ const THIRD_RAD = [-35, -20, 30, -40].map((angle) => DEGREE * angle); // of the 
 const OFF = "Calibrate with the motors off; press Stop first.";
 const BY_HANDS = "This arm is simulated, and its hands can do each step for you. First break something in Bench, such as a reversed potentiometer "
   + "or motor: it is found here and put right.";
+const NOT_TRIED = "The motors were not tried: Stop was pressed, or the page was hidden.";
 const STOPPED = "Stop was pressed; the other motors were not tried.";
 const NO_RULES = "This page came without the rules of a calibration; run `make setup` and reload it, or `greywhale calibrate` in a terminal.";
 
@@ -342,9 +343,9 @@ export class CalibrateView implements View {
 
   private async tryMotors(): Promise<void> {
     const { walk, session, rules } = this;
-    if (!await this.countdown.before("The arm is about to get pulses of its motors")) throw new LinkError("The motors were not tried: Stop was pressed, or the page was hidden.");
     try {
       await this.alone("The motors get pulses; Stop ends them.", async () => {
+        if (!await this.countdown.before("The arm is about to get pulses of its motors")) throw new LinkError(NOT_TRIED);
         let stops = session.stopsAsked; // with those by which a trial itself ends
         for (const joint of walk!.joints.filter((one) => !walk!.motors.has(one))) {
           setText(this.asked, `Motor ${walk!.joints.indexOf(joint) + 1} of ${walk!.joints.length}, joint ${joint}, ${JOINT_NAMES[joint]!}, gets pulses.`);
