@@ -23,7 +23,7 @@ from greywhale.dashboard import run, server
 server.require_page = lambda: Path(".")
 with contextlib.suppress(KeyboardInterrupt):
     ready = lambda access: print(access.address(), access.token, flush=True)
-    run.serve(sys.argv[1], "default", Path("."), 0, list, ["false"], None, ready)
+    run.serve(sys.argv[1], "default", Path("."), 0, list, ["false"], None, False, ready)
 """
 
 

@@ -22,6 +22,21 @@ class FirstStage(Stage):
     view = ""
 
 
+def test_a_simulated_arm_follows_at_once_unless_somebody_had_stopped_it(
+    context: BrowserContext, tmp_path: Path
+) -> None:
+    stage = Stage(tmp_path)
+    stage.answers.follows = True
+    with stage.open(), stages.visit(context, stage) as visit:
+        await_state(visit.page, "following")
+        press(visit.page, "Stop")
+        await_state(visit.page, "disabled")
+        visit.page.reload()
+        visit.page.locator("button.enable:enabled").wait_for()
+        stage.live(0.5)
+        await_state(visit.page, "disabled")
+
+
 @pytest.fixture
 def visitor(context: BrowserContext, tmp_path: Path) -> Iterator[tuple[Page, Stage]]:
     """Somebody who opens the page of a new board for the first time."""

@@ -28,6 +28,9 @@ if TYPE_CHECKING:
     from greywhale.dashboard.access import Access
 
 
+_PRACTICE = {"blank", "faults", "eeprom", "firmware"}  # parameters by which a board is not the bench's usual one
+
+
 class DashboardAnswer(TypedDict):
     address: str  # to open in a browser, once
     token: str  # with which a program asks
@@ -100,9 +103,10 @@ def command(
 
         bench = None if starting is None else starting.result()
         held_port = port if bench is None else bench.port
+        follows = bench is not None and not words.keys() & _PRACTICE
         program = (sys.executable, "-m", "greywhale.cli.job")
         with contextlib.suppress(KeyboardInterrupt):  # the usual end
-            run.serve(held_port, str(arm or "default"), folder, http_port, _catalogue, program, bench, ready)
+            run.serve(held_port, str(arm or "default"), folder, http_port, _catalogue, program, bench, follows, ready)
 
 
 def _is_given(context: click.Context, name: str) -> bool:

@@ -39,6 +39,7 @@ class State(TypedDict):
     arm: str
     folder: str
     sim: bool
+    follows: bool  # a page lets the simulated arm follow when it opens: its board is set up
     files: list[FileFacts]
     controllers: list[str]  # that come with greywhale
     arms: list[str]
@@ -84,6 +85,7 @@ class Answers:
     arm: str
     jobs: Jobs
     bench: BenchControls | None = None
+    follows: bool = False
 
     def state(self) -> State:
         link = self.relay.link
@@ -96,6 +98,7 @@ class Answers:
             "arm": self.arm,
             "folder": str(self.folder.path),
             "sim": self.bench is not None,
+            "follows": self.follows,
             "files": self.folder.files(),
             "controllers": controller_names(),
             "arms": arm_names(),

@@ -32,18 +32,19 @@ def serve(
     catalogue: Callable[[], list[VerbFacts]],
     program: Sequence[str],
     bench: RunningBench | None,
+    follows: bool,
     ready: Callable[[Access], None],
 ) -> None:
     """Serve until Ctrl-C; `ready` gets the access to it when the page can be opened.
 
     `port` is the board's, None for the only one found; verbs work in the folder `path`; `catalogue` and `program` are
-    as in `Jobs`.
+    as in `Jobs`; `follows` is whether the bench's arm may follow as soon as a page is open.
     """
     page = server.require_page()
     folder, relay = Folder(path), Relay(History())
     holder = PortHolder(relay, port)
     jobs = Jobs(relay, folder, catalogue, program, holder.away)
-    answers = Answers(relay, folder, arm, jobs, None if bench is None else BenchControls(bench, folder))
+    answers = Answers(relay, folder, arm, jobs, None if bench is None else BenchControls(bench, folder), follows)
     with contextlib.ExitStack() as held:
         listener = held.enter_context(server.listen(http_port))
         served: int = listener.getsockname()[1]

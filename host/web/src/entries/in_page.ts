@@ -5,7 +5,6 @@
 import "../page.css";
 import { fragmentOf, stateOf, type PageState } from "./link_to_state";
 import type { BenchWish } from "../session/services";
-import { State } from "../link/schema";
 import { button, el, select } from "../parts/dom";
 import { sentenceOf } from "../parts/sentence";
 import { browserStore } from "../parts/storage";
@@ -19,6 +18,7 @@ import { PagePredictor } from "../sources/in_page/predictor";
 import { PageTuner, type TunerParts } from "../sources/in_page/tuner";
 import { SerialBoard } from "../sources/serial/board";
 import { Views } from "./views";
+import { whenDisabled } from "./when_disabled";
 
 /** The parts that the page is made of. */
 export type Parts = {
@@ -120,16 +120,6 @@ async function copyLink(session: Session, state: PageState): Promise<void> {
   } catch {
     session.tell("The link is in the address bar; copy it from there.", "info");
   }
-}
-
-/** Acts once, when the board has started. */
-function whenDisabled(session: Session, act: () => Promise<void>): void {
-  let begun = false;
-  session.changed.on(() => {
-    if (begun || session.status?.state !== State.is.disabled) return;
-    begun = true;
-    void act();
-  });
 }
 
 /** Opens in a state, and enables: nobody stands near a simulated arm. But who has pressed Stop meant it. */

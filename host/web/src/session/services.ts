@@ -10,6 +10,8 @@ export type HostState = {
   readonly arm: string;
   readonly folder: string;
   readonly sim: boolean;
+  /** True if a simulated arm may follow as soon as a page is open. */
+  readonly follows: boolean;
   readonly files: readonly NamedFile[];
   readonly controllers: readonly string[];
   readonly arms: readonly string[];
