@@ -143,6 +143,11 @@ def test_a_board_is_watched_driven_and_changed(context: BrowserContext, site: Si
         expect(page.get_by_text("The changes run; Store keeps them.")).to_be_visible()
         press(page, "Store")
         expect(page.get_by_text("What runs is stored.")).to_be_visible()
+        press(page, "Start")
+        done, not_yet, unknown = "done", "not yet", "not known here"
+        marks = [done, done, done, unknown, not_yet, done, unknown, not_yet]
+        expect(page.locator(".way-mark")).to_have_text(marks)
+        expect(page.get_by_text("It needs greywhale on this computer: `greywhale doctor`.")).to_be_visible()
         require_a_prediction_for_an_arm_of_ones_own(page, tmp_path)
         press(page, "Parameters")
         page.get_by_label("Upload a controller.toml").set_input_files(wrong)

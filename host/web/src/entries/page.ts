@@ -2,7 +2,6 @@
 // address names (#view=live).
 
 import "../page.css";
-import { StopReason } from "../link/schema";
 import { startTheme } from "../parts/theme";
 import { Session } from "../session/session";
 import { findAccess, type Access } from "../sources/access";
@@ -11,7 +10,7 @@ import { ServerBoard } from "../sources/server";
 import { LiveView } from "../views/live/view";
 import { Shell } from "../views/shell";
 import { Views } from "./views";
-import { whenDisabled } from "./when_disabled";
+import { letFollow } from "./when_disabled";
 
 startTheme();
 const asked = new URLSearchParams(location.hash.slice(1)).get("view"); // before the address loses its ticket
@@ -34,13 +33,7 @@ async function begin({ token, sentence }: Access): Promise<void> {
     remedy: "Plug the board in by USB: this page takes it by itself. Without a board, start `greywhale dashboard --sim`: it brings a simulated arm with the real firmware.",
   });
   views.open(asked);
-  if (follows) whenDisabled(session, () => letFollow(session));
-}
-
-/** Enables a simulated arm, near which nobody stands, unless somebody had its motors on before: who stopped them meant it. */
-async function letFollow(session: Session): Promise<void> {
-  const { status, stopsAsked } = session;
-  if (status?.stop_reason === StopReason.is.none && !stopsAsked) await session.attempt(() => session.enable());
+  if (follows) letFollow(session);
 }
 
 /** The rules of a calibration, a file beside the page. */

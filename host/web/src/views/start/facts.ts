@@ -18,6 +18,7 @@ export class Facts {
 
   /** `services` are those of a host, null without one; `heard` is called whenever a job has changed. */
   constructor(readonly session: Session, private readonly services: Services | null, heard: (job: Job) => void) {
+    session.changed.on(() => { this.moved ||= session.motorsOn; });
     services?.jobs.listen((job) => {
       this.jobs.delete(job.verb);
       this.jobs.set(job.verb, job);
@@ -34,7 +35,6 @@ export class Facts {
 
   /** True if the motors were on while this page, or a verb that left a log, looked. */
   get hasMoved(): boolean {
-    this.moved ||= this.session.motorsOn;
     return this.moved || this.files("log").length > 0;
   }
 
