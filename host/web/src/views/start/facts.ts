@@ -54,6 +54,12 @@ export class Facts {
     this.running = [...this.numbers].find(([, raw]) => Object.entries(raw).every(runs))?.[0] ?? null;
   }
 
+  /** True if something is at the port that does not answer, as a board without this firmware: the source's sentence says so. */
+  get isUnflashed(): boolean {
+    const { open, sentence } = this.session.link;
+    return !open && sentence.includes("`greywhale flash");
+  }
+
   /** True if the board speaks this page's words; null while none has said hello. */
   get speaks(): boolean | null {
     const { link, hello } = this.session;

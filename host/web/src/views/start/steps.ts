@@ -53,7 +53,8 @@ function view({ show }: Paths, label: string, name: string): readonly Action[] {
   return name ? [{ label, act: () => show(name) }] : [];
 }
 
-function connect({ session }: Facts, paths: Paths): Step {
+function connect(facts: Facts, paths: Paths): Step {
+  const { session } = facts;
   return {
     title: "Connect",
     about: paths.practice ? "A simulated board and arm are there to practise on; every step is the same on a real one." : paths.remedy,
@@ -62,6 +63,7 @@ function connect({ session }: Facts, paths: Paths): Step {
     verbs: [],
     look: () => {
       const { link, hello } = session;
+      if (facts.isUnflashed) return { done: true, words: "A port is there, and no firmware answers yet." };
       if (!link.open || !hello) return { done: false, words: link.sentence || NO_BOARD.words };
       return { done: true, words: `${Board.of(hello.board).description}: ${link.port}.` };
     },
@@ -78,7 +80,8 @@ function flash(facts: Facts, paths: Paths): Step {
     more: ["your-arm.html#first-flash-and-a-look", "First flash, and a look"],
     verbs: ["flash"],
     look: () => {
-      const { hello } = session;
+      const { hello, link } = session;
+      if (facts.isUnflashed) return { done: false, words: link.sentence };
       if (facts.speaks === null || !hello) return NO_BOARD;
       const version = `${hello.fw_major}.${hello.fw_minor}.${hello.fw_patch}`;
       return facts.speaks ? { done: true, words: `Firmware ${version} runs; it is this page's.` }
