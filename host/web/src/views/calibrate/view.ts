@@ -234,6 +234,7 @@ export class CalibrateView implements View {
   private byHands(label: string, wish: () => HandsWish, done: () => Promise<void>, usual: string): Action[] {
     const { hands, walk } = this;
     return hands ? [this.action(label, async () => {
+      if (hands.areBusy && !this.mends) return; // a second press would begin anew
       if (this.mends) this.go(walk!.at);
       const going = hands.do(wish());
       setText(this.asked, "The bench's hands do it.");
