@@ -165,6 +165,7 @@ function enable(facts: Facts): Step {
     look: () => {
       if (!session.link.open) return NO_BOARD;
       if (session.motorsOn) return { done: true, words: "The arm follows." };
+      if (session.faulty) return { done: false, words: session.whyNotEnable };
       if (facts.hasMoved) return { done: true, words: "The arm has moved with its motors; they are off now." };
       return { done: false, words: session.whyNotEnable || "The motors are off." };
     },
