@@ -112,6 +112,7 @@ def test_a_recording_of_the_view_live_is_in_the_folder(shared_page: Page, stage:
     page.get_by_role("button", name="Live", exact=True).click()
     page.get_by_role("button", name="Record", exact=True).click()
     stage.live(0.2)
+    page.wait_for_function(f"() => Number(document.querySelector('.live').dataset.tick) >= {stage.newest().tick}")
     page.get_by_role("button", name="End recording").click()
     said = page.get_by_role("alert").filter(has_text=f"is in {stage.folder}, and in the view Files.")
     expect(said).to_be_visible()
