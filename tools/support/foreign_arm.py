@@ -1,13 +1,14 @@
 """Arms that greywhale's model does not know, and how they follow before and after a commissioning in lock step.
 
-MuJoCo moves them, and their potentiometers have play behind the joint.
+MuJoCo moves them, and their potentiometers have play behind the joint. `TRAITS` names what an arm may have besides:
+gears with two masses, flexible joints, drivers that lose volts, cogging, a heavy or a feeble arm.
 """
 
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree as xml
@@ -18,19 +19,26 @@ import numpy.typing as npt
 from greywhale.arm import ArmParameters
 from greywhale.arm.export import mjcf
 from greywhale.base.types import Floats
+from greywhale.board.device import Device
+from greywhale.board.upload import upload_controller
 from greywhale.cli.story import RunningBench, record_motion
+from greywhale.cli.story.learn import Learnt, learn
+from greywhale.cli.story.practice import UNTUNED, practise, tables
 from greywhale.cli.story.recorder import HuntedError
 from greywhale.commission import CommissioningRequest, commission
 from greywhale.commission.result import CommissioningResult
 from greywhale.files.arm import load_arm
 from greywhale.files.leader import save_leader
 from greywhale.files.model import arm_toml
+from greywhale.files.paper_tables import paper_table
 from greywhale.files.trajectory import Trajectory
 from greywhale.measure import evaluate
 from greywhale.measure.swings import ripple_at_rest, unrest
 from greywhale.protocol.firmware import JOINTS, TICK_S
+from greywhale.protocol.table import ParameterTable
 from greywhale_sim.assemble import BenchOptions, build_bench
 from greywhale_sim.lockstep import LockStepBench
+from tools.support.foreign_gears import SUBSTEPS, Drivers, Gears, inertia_of_joints, with_rotors
 
 MASS, MOTOR = 0.1, 0.6  # masses are off by this share, motors by this logarithm, both uniform
 FRICTION_V = (0.15, 0.9)
@@ -39,12 +47,62 @@ NOISE_V = (0.001, 0.004)
 STILL_RAD = 0.02  # a leader's potentiometer at rest shows this much
 
 
+# An arm may have, besides: motors apart from their joints by a gap, or by teeth that bend; drivers that lose volts,
+# more in one direction; motors that cog; links that weigh three times as much; motors with a third of the torque.
+TRAITS = ("two-masses", "flexible", "dead-time", "cogging", "heavy", "feeble")
+HALF_GAP_RAD = (0.002, 0.010)
+CONTACT_HZ, FLEXIBLE_HZ = (40.0, 80.0), (8.0, 15.0)  # of the joint on its teeth, the motor held
+CONTACT_DAMPING, FLEXIBLE_DAMPING = 0.1, 0.03  # of the critical one
+LOST_V, LOST_LESS = 0.4, (0.2, 0.8)  # in one direction; a share of it in the other
+COGGING_V, POLES = (0.2, 0.5), (24, 60)
+HEAVIER, FEEBLER = 3.0, 1.0 / 3.0
+CARRIED_POSE_RAD = (0.0, 0.4, 0.0, 0.0)
+
+
 @dataclass(frozen=True)
 class ForeignArm:
-    """Masses, motors and friction of an arm, and the play (4,) rad between each joint and its potentiometer."""
+    """Masses, motors and friction of an arm, the play (4,) rad between each joint and its potentiometer, and traits."""
 
     parameters: ArmParameters
     play: Floats
+    gears: Gears | None = None  # None: rigid
+    drivers: Drivers | None = None  # None: ideal
+
+
+def foreign_arm_with(seed: int, traits: Sequence[str] = ()) -> ForeignArm:
+    """A foreign arm that has these of the `TRAITS`; ValueError for another."""
+    unknown = set(traits) - set(TRAITS)
+    if unknown:
+        raise ValueError(f"no arm can be {sorted(unknown)}; there are {', '.join(TRAITS)}")
+    arm, random = foreign_arm(seed), np.random.default_rng(7500 + seed)
+    share, hertz = random.uniform(*LOST_LESS, JOINTS), random.uniform(0.0, 1.0, JOINTS)
+    half_gap, poles = random.uniform(*HALF_GAP_RAD, JOINTS), random.integers(*POLES, JOINTS).astype(np.float64)
+    cogging, side = random.uniform(*COGGING_V, JOINTS), random.integers(0, 2, JOINTS) == 1
+    data = arm.parameters.model_dump()
+    if "heavy" in traits:
+        data["gravity"] *= HEAVIER
+    if "feeble" in traits:
+        for joint in data["joint"]:
+            joint["motor"]["resistance"] /= FEEBLER
+    parameters = ArmParameters.model_validate(data, strict=False)
+    gears = _gears(parameters, half_gap, hertz, traits) if {"two-masses", "flexible"} & set(traits) else None
+    lost = np.where(side, 1.0, share) * LOST_V, np.where(side, share, 1.0) * LOST_V
+    if "dead-time" not in traits:
+        lost = np.zeros(JOINTS), np.zeros(JOINTS)
+    drivers = Drivers(*lost, cogging if "cogging" in traits else np.zeros(JOINTS), poles)
+    return replace(arm, parameters=parameters, gears=gears, drivers=drivers)
+
+
+def _gears(parameters: ArmParameters, half_gap: Floats, shares: Floats, traits: Sequence[str]) -> Gears:
+    """Flexible joints bend, gears with two masses have a gap and stiff teeth; with both traits they have both."""
+    import mujoco  # only `make oracles` installs it
+
+    carried = inertia_of_joints(mujoco, parameters, np.array(CARRIED_POSE_RAD))
+    bends = "flexible" in traits
+    (low, high), damped = (FLEXIBLE_HZ, FLEXIBLE_DAMPING) if bends else (CONTACT_HZ, CONTACT_DAMPING)
+    turning = 2.0 * np.pi * (low + shares * (high - low))
+    gap = half_gap if "two-masses" in traits else np.zeros(JOINTS)
+    return Gears(gap, carried * turning**2, 2.0 * damped * carried * turning)
 
 
 def foreign_arm(seed: int) -> ForeignArm:
@@ -86,11 +144,13 @@ class MuJoCoPlant:
 
         self._engine: Any = mujoco
         self._half = 0.5 * arm.play
+        self._gears, self._drivers = arm.gears, arm.drivers
         self._shown = np.zeros(JOINTS)
         self._load(arm.parameters)
 
     def _load(self, parameters: ArmParameters) -> None:
-        self._model: Any = self._engine.MjModel.from_xml_string(_as_soft_as_usual(mjcf(parameters)))
+        text = mjcf(parameters) if self._gears is None else with_rotors(parameters)
+        self._model: Any = self._engine.MjModel.from_xml_string(_as_soft_as_usual(text))
         self._model.opt.integrator = self._engine.mjtIntegrator.mjINT_IMPLICITFAST
         self._data: Any = self._engine.MjData(self._model)
 
@@ -102,16 +162,28 @@ class MuJoCoPlant:
 
     def reset(self, angles: Floats) -> None:
         """Hold the arm in a pose by hand."""
-        self._data.qpos[:] = angles
+        self._data.qpos[:] = angles if self._gears is None else np.tile(angles, 2)
         self._data.qvel[:] = 0.0
         self._shown = angles.copy()
 
     def step(self, voltages: Floats, dt: float) -> Floats:
-        self._model.opt.timestep = dt
-        self._data.ctrl[:] = voltages
-        self._engine.mj_step(self._model, self._data)
+        data, gears = self._data, self._gears
+        if self._drivers is not None:
+            voltages = self._drivers.volts(voltages, data.qpos[-JOINTS:])  # of the motors, where they are apart
+        data.ctrl[:] = voltages
+        if gears is None:
+            self._model.opt.timestep = dt
+            self._engine.mj_step(self._model, data)
+        else:
+            self._model.opt.timestep = dt / SUBSTEPS
+            for _ in range(SUBSTEPS):
+                angles, speeds = data.qpos.reshape(2, JOINTS), data.qvel.reshape(2, JOINTS)
+                torque = gears.torque(angles[1] - angles[0], speeds[1] - speeds[0])
+                data.qfrc_applied[:] = np.concatenate([torque, -torque])
+                self._engine.mj_step(self._model, data)
         # The joint drags the wiper along at either end of the play.
-        self._shown = np.clip(self._shown, self._data.qpos - self._half, self._data.qpos + self._half)
+        angles = data.qpos[:JOINTS]
+        self._shown = np.clip(self._shown, angles - self._half, angles + self._half)
         return self._shown
 
 
@@ -169,14 +241,32 @@ def commissioned(bench: RunningBench, folder: Path, unseen: Mapping[str, Traject
     return Commissioned(before, recorded(bench, folder, "after", unseen), outcome, wall)
 
 
-def recorded(bench: RunningBench, folder: Path, when: str, unseen: Mapping[str, Trajectory]) -> Run:
-    """Every motion with the controllers that the board has; infinite where the board ended it for its unrest."""
+def tuned(bench: RunningBench, folder: Path, unseen: Mapping[str, Trajectory]) -> tuple[Learnt, Run]:
+    """What `tune` alone gives, from practice as `greywhale demo` makes it, and how the arm follows with it.
+
+    The board has the controllers from before again when this ends.
+    """
+    nominal, base = load_arm("white_box"), ParameterTable.defaults()
+    logs = practise(bench, nominal, base, folder)
+    learnt = learn(logs[0], logs[1:], tables(base)[: len(logs)], nominal, folder)
+    run = recorded(bench, folder, "tuned", unseen, learnt.controller)
+    with Device(bench.port) as device:
+        upload_controller(device, paper_table(UNTUNED))
+    return learnt, run
+
+
+def recorded(
+    bench: RunningBench, folder: Path, when: str, unseen: Mapping[str, Trajectory], controller: Path | None = None
+) -> Run:
+    """Every motion with this controller, else with what the board has; infinite where the board ended it for its
+    unrest.
+    """
     errors, rests, ripples = {}, {}, {}
     for name, motion in unseen.items():
         leader = folder / "leader.csv"
         save_leader(leader, motion)
         try:
-            log = record_motion(bench, leader, folder / f"{when} {name}.csv").log()
+            log = record_motion(bench, leader, folder / f"{when} {name}.csv", controller).log()
         except HuntedError:
             errors[name] = rests[name] = ripples[name] = np.full(JOINTS, np.inf)
             continue
