@@ -64,7 +64,7 @@ def total_costs(relative: Floats, importances: Sequence[float]) -> Floats:
 
 @dataclass(frozen=True)
 class Unrest:
-    """In the worst rest of the record: (n, 4) each, or (n, plants, 4)."""
+    """In the worst rest of the record, the ripple in all of them: (n, 4) each, or (n, plants, 4)."""
 
     reversals: Integers
     travel: Floats
@@ -76,14 +76,15 @@ class Unrest:
 
 def unrest(result: Result, rests: Sequence[tuple[int, int]], cycle: Hunting, supply_v: float, board: Board) -> Unrest:
     reversals = np.zeros((len(result.mse), JOINTS), dtype=np.int32)
-    travel, beats, loud = (np.zeros(reversals.shape) for _ in range(3))
+    travel, beats, squares = (np.zeros(reversals.shape) for _ in range(3))
     for rows in rests:
         seconds = (rows[1] - rows[0]) * TICK_S
         turned, moved = count_swings(result.angles, *rows, cycle.band_rad)
         reversals = np.maximum(reversals, turned)
         travel = np.maximum(travel, np.where(turned >= cycle.turns, moved / seconds, 0.0))
         beats = np.maximum(beats, duty_swings(result.duties, rows, board) / seconds)
-        loud = np.maximum(loud, supply_v * ripple(result.duties, rows, board))
+        squares += (rows[1] - rows[0]) * (supply_v * ripple(result.duties, rows, board)) ** 2
+    loud = np.sqrt(squares / sum(last - first for first, last in rests))
     lost = np.repeat(result.diverged[:, None], JOINTS, axis=1)
     fails = (reversals >= cycle.turns) | (beats > SWINGS.chatter_at_rest_hz) | lost
     return Unrest(reversals, travel, beats, loud, fails, lost)

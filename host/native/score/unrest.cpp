@@ -68,18 +68,23 @@ std::vector<Unrest> unrest_of(const Run& run, const Rests& rests, double supply_
                               const SwingMeasure& measure) {
   std::vector<Unrest> worst(run.count * kJoints, Unrest{});
   share_out(run.count, 0, [&](std::size_t n) {
+    std::array<double, kJoints> squares{};  // of the ripple, times the ticks
+    double rows = 0.0;
     for (const auto& ticks : rests.ticks) {
+      const auto here = static_cast<double>(ticks[1] - ticks[0]);
+      rows += here;
       const std::array<Unrest, kJoints> found = unrest_in(run, n, ticks, rests, supply_v, measure);
       for (std::size_t i = 0; i < kJoints; ++i) {
         Unrest& one = worst[n * kJoints + i];
         one.reversals = larger(one.reversals, found[i].reversals);
         one.travel = larger(one.travel, found[i].travel);
         one.chatter = larger(one.chatter, found[i].chatter);
-        one.ripple = larger(one.ripple, found[i].ripple);
+        squares[i] += here * found[i].ripple * found[i].ripple;
       }
     }
     for (std::size_t i = 0; i < kJoints; ++i) {
       Unrest& one = worst[n * kJoints + i];
+      one.ripple = rows > 0.0 ? std::sqrt(squares[i] / rows) : 0.0;
       one.lost = run.diverged[n];
       one.fails = one.reversals >= rests.turns || one.chatter > swings.chatter_at_rest_hz || run.diverged[n];
     }

@@ -11,7 +11,7 @@
 
 namespace greywhale::score {
 
-// Of a joint on a plant in one scenario: the worst of its rests.
+// Of a joint on a plant in one scenario: the worst of its rests; the ripple is of all rests, as a log shows it.
 struct Unrest {
   double reversals;
   double travel;   // rad/s, in swings of a limit cycle

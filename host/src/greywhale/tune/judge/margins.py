@@ -90,7 +90,7 @@ class Margin:
 
 @dataclass(frozen=True)
 class Unrest:
-    """The unrest of every candidate on every plant, per joint: (n, k, 4) each, in the worst rest of the record."""
+    """The unrest of every candidate on every plant, per joint: (n, k, 4) each, in the worst rest; the ripple in all."""
 
     numbers: Floats  # (n, k, 4, 6), in the order of Unrest in host/native/score/unrest.h
 
