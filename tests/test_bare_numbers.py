@@ -28,7 +28,7 @@ ALLOWED = {
     "commission/arm_on_port.py": {"TRIES": "repeats where this computer was too busy; the arm is not judged"},
     "commission/foresee.py": {"SEED": SEED, "LEAST": ROUNDING},
     "commission/measures.py": {"LATEST_BEGIN_S": "how far the beginning of the check is looked for in its log"},
-    "commission/motions.py": {"RATE_HZ": DRAWN, "PEAK": "of a minimum-jerk move, by its formula", "REACHES_SEED": SEED},
+    "commission/motions.py": {"RATE_HZ": DRAWN, "REACHES_SEED": SEED},
     "commission/request.py": {"ROUNDS": ASKED, "TRIALS": ASKED},
     "commission/run.py": {"DESIGN_BUDGET": COUNTS},
     "commission/search.py": {"LEAST_RAD2": ROUNDING},

@@ -14,11 +14,10 @@ from greywhale.base.types import Floats
 from greywhale.commission.limits import COMMISSIONING_LIMITS, MotionLimits
 from greywhale.files.trajectory import Trajectory
 from greywhale.loop import human_reaches
-from greywhale.loop.leader_motions import RANGE_RAD, minimum_jerk
+from greywhale.loop.leader_motions import RANGE_RAD, minimum_jerk, move_through
 from greywhale.protocol.firmware import FASTEST_LED_RAD_S, JOINTS
 
 RATE_HZ = 200.0
-PEAK = 1.875  # of a minimum-jerk move's speed, beside its mean
 REACHES_SEED = 3281  # in these each joint goes far; they judge nothing anywhere else
 PARTS = ("small moves", "moves", "reaches", "slow motion", "holding still")
 
@@ -100,18 +99,7 @@ def _within(room: JointRange, angles: Floats) -> Floats:
 
 def _through(stops: list[Floats], holds: list[float], edge_s: float, limits: MotionLimits) -> Trajectory:
     """From stop to stop, each held for its time; an edge takes `edge_s`, or longer where it would be too quick."""
-    times, rows = [np.zeros(1)], [np.array([stops[0]])]
-    now, fastest = holds[0], limits.speed_share * FASTEST_LED_RAD_S
-    for before, after, hold in zip(stops[:-1], stops[1:], holds[1:], strict=True):
-        edge = max(edge_s, PEAK * float(np.abs(after - before).max()) / fastest)
-        grid = np.arange(1, round(edge * RATE_HZ) + 1) / RATE_HZ
-        share = minimum_jerk(grid / grid[-1])[:, None]
-        times += [np.array([now]), now + grid]
-        rows += [before[None], before + share * (after - before)]
-        now += grid[-1] + hold
-    times.append(np.array([now]))
-    rows.append(stops[-1][None])
-    return Trajectory(np.concatenate(times), np.vstack(rows))
+    return move_through(stops, holds, edge_s, limits.speed_share * FASTEST_LED_RAD_S)
 
 
 def _reaches(room: JointRange, limits: MotionLimits) -> Trajectory:

@@ -1,4 +1,4 @@
-"""Leader motions made by the project itself: human-like reaches, and the paper's steps and multi-steps.
+"""Leader motions made by the project itself: human-like reaches, the paper's steps and multi-steps, visits of poses.
 
 A human reach is well described by a minimum-jerk path (Flash and Hogan 1985) with a small physiological
 tremor at 8 to 12 Hz on top. Pauses between reaches are long enough for a follower to settle, so that a
@@ -22,6 +22,13 @@ TREMOR_RAD = 0.002  # root mean square
 # The edge of a step (s), and how many times as fast as on average such a path is in its middle.
 EDGE_S = 0.04
 MINIMUM_JERK_PEAK = 1.875
+# Poses: how far out they are, as a share of half the range; how far from a pose each side's approach begins (rad), at
+# most this share of half the range; how long a move to it takes (s), or longer where its peak would be quicker (rad/s).
+POSE_SHARE, APPROACH_RAD, APPROACH_SHARE = 0.5, 0.2, 0.4
+APPROACH_S, POSES_RAD_S = 0.4, 2.0
+TURN_S, VISIT_S = 0.1, 1.0  # a turn before an approach is no rest; a visit lets the follower arrive, and then measures
+# The middle, and four corners in which shoulder and wrist lean opposite ways, so that the hand stays about level.
+POSES = np.array([[0, 0, 0, 0], [1, 1, -1, 1], [1, -1, 1, -1], [-1, 1, -1, -1], [-1, -1, 1, 1]], dtype=np.float64)
 # Comfortable range of each joint, rad: base yaw, shoulder pitch, wrist pitch, wrist roll.
 RANGE_RAD = np.array([[-1.0, 1.0], [-0.2, 1.1], [-0.9, 0.7], [-1.2, 1.2]])
 
@@ -93,3 +100,35 @@ def multi_steps(
         takes_s = max(EDGE_S, MINIMUM_JERK_PEAK * abs(high - low) / fastest_rad_s)
         angle += (high - low) * minimum_jerk((time_s - edge) / takes_s)
     return Trajectory(time_s, np.tile(angle[:, None], (1, JOINTS)))
+
+
+def poses(low: Floats, high: Floats, visits: int) -> Trajectory:
+    """Five poses between the angles `low` and `high` (4,) rad, each visited `visits` times from below and from above,
+    by all joints at once: a round through all poses after the other, as ISO 9283 has it.
+    """
+    middle, half = 0.5 * (low + high), 0.5 * (high - low)
+    approach = np.minimum(APPROACH_RAD, APPROACH_SHARE * half)
+    each_round = [
+        place
+        for corner in POSES
+        for pose in [middle + POSE_SHARE * half * corner]
+        for place in (pose - approach, pose, pose + approach, pose)
+    ]
+    holds = [TURN_S, VISIT_S] * (len(each_round) // 2 * visits)
+    return move_through(each_round * visits, holds, APPROACH_S, POSES_RAD_S)
+
+
+def move_through(stops: list[Floats], holds: list[float], edge_s: float, fastest_rad_s: float) -> Trajectory:
+    """From stop to stop, each held for its time; an edge takes `edge_s`, or longer where it would be too quick."""
+    times, rows = [np.zeros(1)], [np.array([stops[0]])]
+    now = holds[0]
+    for before, after, hold in zip(stops[:-1], stops[1:], holds[1:], strict=True):
+        edge = max(edge_s, MINIMUM_JERK_PEAK * float(np.abs(after - before).max()) / fastest_rad_s)
+        grid = np.arange(1, round(edge * RATE_HZ) + 1) / RATE_HZ
+        share = minimum_jerk(grid / grid[-1])[:, None]
+        times += [np.array([now]), now + grid]
+        rows += [before[None], before + share * (after - before)]
+        now += grid[-1] + hold
+    times.append(np.array([now]))
+    rows.append(stops[-1][None])
+    return Trajectory(np.concatenate(times), np.vstack(rows))
