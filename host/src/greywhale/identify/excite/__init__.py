@@ -5,6 +5,6 @@
 """
 
 from greywhale.identify.excite.design import BUDGET, SECONDS, Design, Problem, check_effort, design
-from greywhale.identify.excite.limits import parse_range
+from greywhale.identify.excite.limits import parse_range, room_of
 
-__all__ = ["BUDGET", "SECONDS", "Design", "Problem", "check_effort", "design", "parse_range"]
+__all__ = ["BUDGET", "SECONDS", "Design", "Problem", "check_effort", "design", "parse_range", "room_of"]

@@ -46,6 +46,21 @@ def limits_of(
 
     A joint that is not in use has no range: it stays at 0. Raises UserError where arm and board use other joints.
     """
+    low, high = room_of(arm, table, pose, ranges, wanted)
+    speed, acceleration = _strength(arm, table, low, high, wanted)
+    tracking = table.physical("tracking_limit") or wanted.usual_tracking_rad
+    lag = wanted.lag_share * min(tracking, wanted.usual_tracking_rad)
+    return Limits(pose, low, high, speed, acceleration, lag)
+
+
+def room_of(
+    arm: ArmParameters,
+    table: ParameterTable,
+    pose: Floats,
+    ranges: Mapping[int, tuple[float, float]],
+    wanted: ExcitationLimits = IDENTIFICATION_LIMITS.excitation,
+) -> tuple[Floats, Floats]:
+    """The least and the largest angles (4,) rad of such a motion."""
     require_same("the arm file", arm.joints_in_use, "the board", table.joints_in_use)
     for joint in ranges:
         if joint not in arm.joints_in_use:
@@ -56,10 +71,7 @@ def limits_of(
         least = max(table.physical(f"joint{joint}.limit_min"), stops.min) + wanted.margin_rad
         most = min(table.physical(f"joint{joint}.limit_max"), stops.max) - wanted.margin_rad
         low[joint], high[joint] = _range(joint, pose[joint], ranges.get(joint), least, most, wanted)
-    speed, acceleration = _strength(arm, table, low, high, wanted)
-    tracking = table.physical("tracking_limit") or wanted.usual_tracking_rad
-    lag = wanted.lag_share * min(tracking, wanted.usual_tracking_rad)
-    return Limits(pose, low, high, speed, acceleration, lag)
+    return low, high
 
 
 def _range(
