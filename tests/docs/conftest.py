@@ -26,10 +26,12 @@ from greywhale.dashboard import server as dashboard_server
 from greywhale.files import parameter_file
 from greywhale.files.arm import content_of, default_arm, load_arm
 from greywhale.files.leader import save_leader
-from greywhale.files.log import read_log
+from greywhale.files.log import LogWriter, read_log
+from greywhale.files.log.layout import Origin
 from greywhale.files.trajectory import Trajectory
 from greywhale.identify import identify
 from greywhale.loop import human_reaches
+from greywhale.loop.leader_motions import poses
 from greywhale.protocol.schema import HelloReply
 from greywhale.protocol.table import ParameterTable
 from greywhale.tune import tune
@@ -68,6 +70,11 @@ def yours(tmp_path_factory: pytest.TempPathFactory) -> Path:
         reaches = human_reaches(seed, 6.0)
         shoulder_alone = replace(reaches, angles=reaches.angles * (np.arange(4) == 1))
         record(random_arm(2), shoulder_alone, folder / f"{name}.csv", table_of("before_tuning"), seed)
+    visits = poses(np.full(4, -0.4), np.full(4, 0.4), 2)
+    for name, sag in (("plain", 0.0), ("loaded", 0.01)):
+        with LogWriter(folder / f"{name}.csv", Origin(param_crc=1, period_ms=1, every_ticks=10)) as log:
+            for time_s, angles in zip(times := np.arange(0.0, visits.duration_s, 0.01), visits.at(times), strict=True):
+                log.append(float(time_s), angles.tolist(), (angles - sag).tolist(), [0.0] * 4, "following")
     for name in LOGS:
         shutil.copy(folder / "fit.csv", folder / f"{name}.csv")
     (folder / "arm.toml").write_bytes(content_of("default"))

@@ -35,7 +35,11 @@ CALLS = {
     "replay": ["motion.csv --out replayed.csv"],
     "stop": ["", "--clear-fault"],
     "clutch": ["disengage", "engage"],
-    "evaluate": ["log.csv", "log.csv before.csv --picture both.svg"],
+    "evaluate": [
+        "log.csv",
+        "log.csv before.csv --picture both.svg",
+        "--repeatability plain.csv loaded.csv --arm arm.toml",
+    ],
     "identify": ["fit.csv --validate second.csv"],
     "tune": ["model.toml", "model.toml --tables"],
     "commission": ["--model model.toml"],

@@ -13,7 +13,7 @@ from greywhale.adapt.limits import ADAPTATION_LIMITS
 from greywhale.base.limits import markdown_table, names_in
 from greywhale.commission.limits import COMMISSIONING_LIMITS
 from greywhale.identify.limits import IDENTIFICATION_LIMITS
-from greywhale.measure.limits import SWING_LIMITS
+from greywhale.measure.limits import REPEATABILITY_LIMITS, SWING_LIMITS
 from greywhale.tune.limits import TUNING_LIMITS
 from tools.generate.current import keep_current
 
@@ -87,6 +87,11 @@ ROOMS = (
         "From where on a swing counts, and how much more than before a joint may swing in a commissioning and in an "
         "adaptation. The bounds are in `judging.swings` of a tuning too.",
         SWING_LIMITS,
+    ),
+    Room(
+        "Repeatability",
+        "`repeatability(log, limits=...)` of `greywhale.measure.repeatability`; see [evaluate](verbs/evaluate.md).",
+        REPEATABILITY_LIMITS,
     ),
 )
 

@@ -19,7 +19,7 @@ from greywhale.files.leader import load_leader
 from greywhale.files.log import read_log
 from greywhale.files.model import to_toml
 from greywhale.identify import identify
-from greywhale.loop import human_reaches
+from greywhale.loop import human_reaches, leader_motions
 from greywhale.protocol.firmware import JOINTS, STEP_LSB
 from greywhale.protocol.schema import State
 from greywhale_sim.words import lock_step
@@ -71,6 +71,24 @@ def test_an_excited_log_identifies_the_arm(
             assert value == pytest.approx(true / motor.torque_per_volt, rel=0.25), f"joint {joint}: {kind}"
     for joint in (1, 2):
         assert found[f"joint{joint}.alpha"] == pytest.approx(1.0 / arm.actuator(joint).torque_per_volt, rel=0.05)
+
+
+@pytest.mark.slow
+def test_visits_of_a_pose_through_the_port_tell_how_exactly_the_arm_comes_back(
+    bench: RunningBench, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(leader_motions, "POSES", leader_motions.POSES[:1])
+    out = str(tmp_path / "log.csv")
+    answer = told(capsys, "record", "--poses", "2", "-p", bench.port, "-o", out, "--range", "0:-0.3:0.5")
+    assert (answer["visits"], answer["dropped"], answer["waits"]) == (2, 0, 0)
+    (log,) = told(capsys, "evaluate", "--repeatability", out, "--arm", "default")["logs"]
+    (pose,) = log["poses"]
+    assert pose["angles_rad"][0] == pytest.approx(0.1, abs=2 * STEP_LSB)
+    assert [one["sides"] for one in pose["tip"]["approaches"]] == [["below"] * 4, ["above"] * 4]
+    for joint in map(str, range(JOINTS)):
+        below, above = pose["joints"][joint]["approaches"]
+        assert (below["visits"], above["visits"]) == (2, 2)
+        assert pose["joints"][joint]["variation"] > 5e-3, "friction holds each joint where it first stops"
 
 
 @pytest.mark.slow

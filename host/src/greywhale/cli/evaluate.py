@@ -1,4 +1,4 @@
-"""`greywhale evaluate`: the measures of a log, and its picture."""
+"""`greywhale evaluate`: the measures of a log, and its picture; with --repeatability, those of visits of poses."""
 
 from __future__ import annotations
 
@@ -8,10 +8,13 @@ from typing import NotRequired, TypedDict
 
 import click
 
-from greywhale.base.errors import counted
+from greywhale.base.errors import BadUsage, counted
 from greywhale.base.formats.whole import refuse_inputs
 from greywhale.base.telling import Column, Motions, Part, Row, Sentences, Step, Table, Telling
+from greywhale.cli import completion
 from greywhale.cli.output import FILE, json_option, option, overwrite_option, show
+from greywhale.cli.repeatability import Measured, RepeatabilityAnswer, draw
+from greywhale.files.arm import load_arm
 from greywhale.files.log import Log, read_log
 from greywhale.files.log.check import Check
 from greywhale.files.log.condition import Gap
@@ -52,10 +55,24 @@ class EvaluateAnswer(TypedDict):
 
 @click.command("evaluate")
 @click.argument("logs", metavar="LOG...", nargs=-1, required=True, type=FILE)
-@option("--picture", type=FILE, help="Draw angles, errors and voltages (.png, .svg or .pdf).")
+@option("--picture", type=FILE, help="Draw angles, errors and voltages, or visits (.png, .svg or .pdf).")
+@option("--repeatability", is_flag=True, help="Measure how exactly the arm came back to poses, by ISO 9283.")
+@option(
+    "--arm",
+    "arm_file",
+    shell_complete=completion.arms,
+    help="With --repeatability: your arm.toml or a model.toml, for the tip and for play that is known.",
+)
 @overwrite_option
-@json_option(EvaluateAnswer)
-def command(logs: tuple[Path, ...], picture: Path | None, overwrite: bool, as_json: bool) -> None:
+@json_option(EvaluateAnswer | RepeatabilityAnswer)
+def command(
+    logs: tuple[Path, ...],
+    picture: Path | None,
+    repeatability: bool,
+    arm_file: str | None,
+    overwrite: bool,
+    as_json: bool,
+) -> None:
     """Measure how well the follower followed in a log.
 
     Per joint: the mean squared error (the total is the sum over the joints), the steady-state error (mean absolute
@@ -66,16 +83,26 @@ def command(logs: tuple[Path, ...], picture: Path | None, overwrite: bool, as_js
     0.02 rad, of that place); of several steps, the worst.
     Several logs are measured one by one and drawn into one picture. A log that is not as it was recorded, or has gaps,
     is measured too, with a warning.
+
+    With --repeatability a log of `greywhale record --poses`, or any in which the leader rests at the same poses again
+    and again, coming from either side. Per joint, and with --arm at the tip: the repeatability RP and accuracy AP of
+    ISO 9283, and the lost motion, its multidirectional variation vAP. Several logs, such as without and with a load,
+    are also compared with the first, pose by pose.
     """
-    refuse_inputs(picture, *logs)
+    refuse_inputs(picture, *logs, arm_file)
     require_new(overwrite, picture)
     if picture is not None:
         kind_of(picture)
+    if repeatability:
+        _measure_visits(logs, picture, arm_file, as_json)
+        return
+    if arm_file is not None:
+        raise BadUsage("--arm belongs to --repeatability; add that, or leave it out.")
     read, evaluations, warnings = [], [], []
     for path in logs:
         log = read_log(path)
         evaluations.append(evaluate(log))
-        warnings.append([*log.remarks, *(f"{log.name}: {sentence}." for sentence in tell_powerless(log))])
+        warnings.append(_remarks(log))
         read.append(log if picture is not None else log.without_samples())
     results: list[LogFacts] = [
         {
@@ -99,6 +126,27 @@ def command(logs: tuple[Path, ...], picture: Path | None, overwrite: bool, as_js
     followed = [log.name for log, evaluation in zip(read, evaluations, strict=True) if evaluation.following]
     steps = [Step("identify", "Find the arm that made this", {"logs": followed})] if followed else []
     show(as_json, answer, Telling(parts, steps))
+
+
+def _measure_visits(logs: tuple[Path, ...], picture: Path | None, arm_file: str | None, as_json: bool) -> None:
+    measured = Measured(None if arm_file is None else load_arm(arm_file))
+    remarks = []
+    for path in logs:
+        log = read_log(path)
+        measured.take(log)
+        remarks.append(_remarks(log))
+    parts = [part for number, said in enumerate(remarks) for part in measured.tell(number, said)]
+    parts.append(measured.tell_unseen())
+    answer: RepeatabilityAnswer = {"logs": [measured.facts(number, said) for number, said in enumerate(remarks)]}
+    if picture is not None:
+        draw(picture, measured)
+        answer["picture"] = str(picture)
+        parts.append(Sentences([f"Picture: {picture}"]))
+    show(as_json, answer, Telling(parts))
+
+
+def _remarks(log: Log) -> list[str]:
+    return [*log.remarks, *(f"{log.name}: {sentence}." for sentence in tell_powerless(log))]
 
 
 def _draw(picture: Path, logs: list[Log]) -> None:

@@ -1,9 +1,10 @@
-"""`greywhale record`: a log of leader, follower and voltages; with --excite, of a motion that this host leads."""
+"""`greywhale record`: a log of leader, follower and voltages; on request of a motion that this host leads."""
 
 from __future__ import annotations
 
 import contextlib
 from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, NotRequired, TypedDict
@@ -13,6 +14,7 @@ import click
 from greywhale.base.errors import MOST_SEED, BadUsage, counted
 from greywhale.base.formats.whole import refuse_inputs
 from greywhale.base.telling import Motions, Sentences, Step, Telling
+from greywhale.base.types import Floats, NotedProgress
 from greywhale.board.device import Device
 from greywhale.board.pots import FOLLOWERS, require_good_pots
 from greywhale.board.reconnect import record_through_losses
@@ -33,21 +35,20 @@ from greywhale.cli.countdown import prepare_motion, warn_page, yes_option
 from greywhale.cli.output import FILE, OnPort, json_option, option, overwrite_option, port_option, progress, show
 from greywhale.files.leader import save_leader
 from greywhale.files.outputs import require_new
+from greywhale.files.trajectory import Trajectory
+from greywhale.loop.leader_motions import poses as visits_of_poses
 from greywhale.protocol.holder import meddler
 from greywhale.protocol.ports import choose_port
+from greywhale.protocol.table import ParameterTable
 
 if TYPE_CHECKING:
     from greywhale.identify.excite import Design
 
 USUAL_RECORDING_S = 10.0  # without --seconds
-# Options that mean nothing without --excite.
-_OF_EXCITE = {
-    "arm_file": "--arm",
-    "ranges": "--range",
-    "save_motion": "--save-motion",
-    "seed": "--seed",
-    "budget": "--budget",
-}
+# Options that mean nothing without a motion that this host leads, and those that belong to --excite alone.
+_OF_LED = {"arm_file": "--arm", "ranges": "--range", "save_motion": "--save-motion"}
+_OF_EXCITE = {"seed": "--seed", "budget": "--budget"}
+MOST_VISITS = 100  # more would take longer than an hour
 
 
 class RecordAnswer(OnPort, RecordingFacts):
@@ -65,6 +66,10 @@ class DesignFacts(TypedDict):
 
 class Saved(TypedDict):
     motion: NotRequired[str]  # with --save-motion
+
+
+class RecordPosesAnswer(OnPort, LedRecordingFacts, Saved):
+    visits: int  # of each pose, from below and from above
 
 
 class RecordExciteAnswer(OnPort, LedRecordingFacts, Saved):
@@ -86,27 +91,36 @@ class RecordExciteAnswer(OnPort, LedRecordingFacts, Saved):
 )
 @option("--excite", is_flag=True, help="Turn the motors on and lead the arm along the motion that shows most about it.")
 @option(
+    "--poses",
+    metavar="N",
+    type=click.IntRange(2, MOST_VISITS),
+    help="Turn the motors on and lead the arm N times to each of five poses from either side, for `evaluate "
+    "--repeatability`; ISO 9283 has 30, which takes some 11 minutes.",
+)
+@option(
     "--arm",
     "arm_file",
     shell_complete=completion.arms,
-    help="With --excite: your arm.toml or a model.toml.  [default: white_box]",
+    help="With --excite or --poses: your arm.toml or a model.toml.  [default: white_box]",
 )
 @option(
     "--range",
     "ranges",
     multiple=True,
     metavar="J:MIN:MAX",
-    help="With --excite: range of a joint in rad, instead of 1 rad to either side of where it is.",
+    help="With --excite or --poses: range of a joint in rad, instead of 1 rad to either side of where it is.",
 )
 @option("--seed", type=click.IntRange(0, MOST_SEED), help="With --excite: another seed, another motion.  [default: 0]")
 @option(
     "--budget", type=int, help="With --excite: motions to try; more take longer and show a little more.  [default: 300]"
 )
-@option("--save-motion", type=FILE, help="With --excite: also write the motion, for `replay` or `sim --leader`.")
+@option(
+    "--save-motion", type=FILE, help="With --excite or --poses: also write the motion, for `replay` or `sim --leader`."
+)
 @overwrite_option
 @yes_option
 @port_option
-@json_option(RecordAnswer | RecordExciteAnswer)
+@json_option(RecordAnswer | RecordExciteAnswer | RecordPosesAnswer)
 def command(
     out: Path,
     seconds: float | None,
@@ -115,6 +129,7 @@ def command(
     disengaged: bool,
     reconnect: bool,
     excite: bool,
+    poses: int | None,
     arm_file: str | None,
     ranges: tuple[str, ...],
     seed: int | None,
@@ -135,11 +150,12 @@ def command(
     That never starts a motor.
 
     With --excite nobody needs to move the leader: this program leads the arm along a motion designed for `identify`,
-    from where the arm is and back. It keeps the joints' limits, but knows of no table and no link in the way: clear the
-    arm's surroundings, or narrow the joints' --range. A countdown on the terminal comes first, but not on the simulated
-    bench.
+    from where the arm is and back; with --poses to five poses again and again. It keeps the joints' limits, but knows
+    of no table and no link in the way: clear the arm's surroundings, or narrow the joints' --range. A countdown on the
+    terminal comes first, but not on the simulated bench.
     """
-    if reconnect and (enable or excite):
+    led = [name for name, said in (("--excite", excite), ("--poses", poses is not None)) if said]
+    if reconnect and (enable or led):
         raise BadUsage(
             "--reconnect is for logs with the motors off: after a lost port they stay off, so a log of their motion "
             "ends there; leave it out."
@@ -147,8 +163,10 @@ def command(
     if disengaged and not enable:
         raise BadUsage("--disengaged is for a leader that the follower follows; add --enable.")
     if not excite:
+        _refuse(_OF_EXCITE, "--excite", seed=seed, budget=budget)
+    if not led:
         require_new(overwrite, out)
-        _refuse_without_excite(arm_file=arm_file, ranges=ranges, save_motion=save_motion, seed=seed, budget=budget)
+        _refuse(_OF_LED, "--excite or --poses", arm_file=arm_file, ranges=ranges, save_motion=save_motion)
         chosen, length = choose_port(port), USUAL_RECORDING_S if seconds is None else seconds
         if reconnect:
             with progress() as report:
@@ -161,15 +179,17 @@ def command(
         answer: RecordAnswer = {"port": chosen, **recorded.as_dict()}
         show(as_json, answer, tell_recording(chosen, recorded, followed=enable))
         return
+    if len(led) > 1:
+        raise BadUsage("--excite and --poses are two motions; record one after the other.")
     if enable:
-        raise BadUsage("--excite turns the motors on by itself; leave --enable out.")
+        raise BadUsage(f"{led[0]} turns the motors on by itself; leave --enable out.")
     check_every_led(every)
     refuse_inputs(out, arm_file)
     refuse_inputs(save_motion, arm_file)
     require_new(overwrite, out, save_motion)
     if save_motion is not None and save_motion.resolve() == out.resolve():
         raise BadUsage(f"{out}: the log and the motion cannot be one file; give --save-motion another.")
-    plan = _plan(arm_file, ranges, seconds, seed, budget)
+    plan = _plan_poses(arm_file, ranges, seconds, poses) if poses else _plan(arm_file, ranges, seconds, seed, budget)
     chosen = choose_port(port)
     warn = prepare_motion(chosen, yes)
     with Device(chosen) as device:
@@ -183,8 +203,13 @@ def command(
         with progress() as report:
             recording = record_led(device, out, designed.motion, every, report, running)
     saved: Saved = {} if save_motion is None else {"motion": str(save_motion)}
-    result: RecordExciteAnswer = {"port": device.port, **recording.as_dict(), "design": _facts(designed), **saved}
-    show(as_json, result, tell_recording(chosen, recording, designed.text()))
+    result: RecordExciteAnswer | RecordPosesAnswer
+    if isinstance(designed, Visits):
+        result = {"port": device.port, **recording.as_dict(), "visits": designed.visits, **saved}
+        show(as_json, result, tell_visits(chosen, recording, designed))
+    else:
+        result = {"port": device.port, **recording.as_dict(), "design": _facts(designed), **saved}
+        show(as_json, result, tell_recording(chosen, recording, designed.text()))
 
 
 def _facts(designed: Design) -> DesignFacts:
@@ -215,10 +240,35 @@ def _plan(
     )
 
 
-def _refuse_without_excite(**given: object) -> None:
+@dataclass(frozen=True)
+class Visits:
+    """A motion to poses, again and again."""
+
+    motion: Trajectory
+    visits: int
+
+
+def _plan_poses(
+    arm_file: str | None, ranges: tuple[str, ...], seconds: float | None, visits: int
+) -> Callable[..., Visits]:
+    """Make the visits, and refuse whatever can be refused before a board is asked."""
+    from greywhale.files.arm import load_arm
+    from greywhale.identify.excite import parse_range, room_of
+
+    if seconds is not None:
+        raise BadUsage("--poses takes as long as its visits do; leave --seconds out.")
+    arm, chosen = load_arm(arm_file or "white_box"), dict(parse_range(text) for text in ranges)
+
+    def make(pose: Floats, table: ParameterTable, report: NotedProgress) -> Visits:
+        return Visits(visits_of_poses(*room_of(arm, table, pose, chosen), visits), visits)
+
+    return make
+
+
+def _refuse(options: dict[str, str], owner: str, **given: object) -> None:
     for name, value in given.items():
         if value is not None and value != ():
-            raise BadUsage(f"{_OF_EXCITE[name]} belongs to --excite; add that, or leave it out.")
+            raise BadUsage(f"{options[name]} belongs to {owner}; add that, or leave it out.")
 
 
 @contextlib.contextmanager
@@ -240,6 +290,15 @@ def tell_recording(port: str, recording: Recording, *more: str, followed: bool =
     ]
     parts = (Sentences((describe(port, recording), *more)), Motions({"follower": log}))
     return Telling(parts, steps if followed else ())
+
+
+def tell_visits(port: str, recording: Recording, made: Visits) -> Telling:
+    """A recording of visits, which shows how exactly the arm comes back."""
+    log = str(recording.path)
+    said = f"Each of five poses was visited {counted(made.visits, 'time')} from below and from above."
+    parts = (Sentences((describe(port, recording), said)), Motions({"follower": log}))
+    step = Step("evaluate", "Measure how exactly it came back", {"logs": [log], "repeatability": True})
+    return Telling(parts, [step])
 
 
 def describe(port: str, recording: Recording) -> str:

@@ -1,4 +1,6 @@
-"""Limits of a joint's swings, by what it did before, for a commissioning and an adaptation alike."""
+"""Limits of a joint's swings, by what it did before, for a commissioning and an adaptation alike; and what counts as a
+visit of a pose.
+"""
 
 from __future__ import annotations
 
@@ -7,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from greywhale.base.limits import MEASURED_IN_TRIALS, limit
+from greywhale.base.limits import BY_DEFINITION, MEASURED_IN_TRIALS, limit
 from greywhale.base.types import Floats
 from greywhale.measure.swings import Hunting
 
@@ -77,6 +79,28 @@ class SwingLimits:
     bounds: SwingBounds = SwingBounds()
 
 
+@dataclass(frozen=True)
+class RepeatabilityLimits:
+    """Conditions for a visit of a pose, and for coming from a side."""
+
+    same_pose_rad: float = limit(
+        0.05, "rad", "rests of the leader that are no farther apart are one pose: a hand finds it again so well"
+    )
+    approach_rad: float = limit(
+        0.05, "rad", "a joint comes from the side where its leader last was farther away: friction and play are less"
+    )
+    averaged_s: float = limit(
+        0.25, "s", "the end of a rest over which angles are averaged: two periods of a hand's tremor and more"
+    )
+    calm_rad: float = limit(1e-3, "rad", "a leader that is farther from the middle of its rest begins to leave it")
+    calm_spreads: float = limit(
+        4.0, "times its median distance", "one that trembles leaves when it is farther than this"
+    )
+    still_rad: float = limit(0.02, "rad", "a follower that moves more in that time has not come to rest")
+    least_visits: int = limit(2, "visits", "a standard deviation needs so many", BY_DEFINITION)
+
+
+REPEATABILITY_LIMITS = RepeatabilityLimits()
 SWING_LIMITS = SwingLimits()
 SWING_BOUNDS = SWING_LIMITS.bounds
 
