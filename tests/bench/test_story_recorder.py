@@ -9,7 +9,7 @@ import pytest
 
 from greywhale.board.device import Device
 from greywhale.board.upload import upload_set
-from greywhale.cli.story.recorder import HuntedError, record_motion
+from greywhale.cli.story.recorder import StoppedError, record_motion
 from greywhale.files.leader import save_leader
 from greywhale.files.trajectory import Trajectory
 from greywhale.protocol.table import ParameterTable
@@ -25,7 +25,7 @@ def test_a_joint_that_hunts_ends_its_recording_and_the_next_begins(tmp_path: Pat
     with lock_step() as bench:
         with Device(bench.port) as device:
             upload_set(device, ParameterTable.defaults().with_raw(HUNTS))
-        with pytest.raises(HuntedError, match="swung to and fro"):
+        with pytest.raises(StoppedError, match="swung to and fro"):
             record_motion(bench, leader, tmp_path / "log.csv")
         with Device(bench.port) as device:
             upload_set(device, ParameterTable.defaults())

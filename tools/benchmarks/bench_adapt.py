@@ -102,7 +102,7 @@ class ForeignCase(Case):
         """See Case."""
         base, white = ParameterTable.defaults(), load_arm("white_box")
         with tempfile.TemporaryDirectory() as name, bench_of(foreign_arm(FOREIGN), Path(name)) as bench:
-            fit, *checks = practise(bench, white, base, Path(name))
+            fit, *checks = practise(bench, white, base, Path(name)).logs
             found = learn(fit, checks, tables(base), white, Path(name))
             return found.model.read_text(encoding="utf-8"), found.tuning.after
 

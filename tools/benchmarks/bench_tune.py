@@ -52,7 +52,7 @@ def run() -> list[Figure]:
     wanted, nominal = motions(), load_arm("white_box")
     with BenchProcess("--speed", "max") as bench:
         before = measured(bench, wanted, paper_table(UNTUNED), "before")
-        logs = practise(bench, nominal, ParameterTable.defaults(), FOLDER)
+        logs = practise(bench, nominal, ParameterTable.defaults(), FOLDER).logs
         learnt = learn(logs[0], logs[1:], tables(ParameterTable.defaults()), nominal, FOLDER)
         after = measured(bench, wanted, learnt.controller, "after")
     upload_s = next(iter(after.values()))[1]

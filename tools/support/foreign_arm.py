@@ -24,7 +24,7 @@ from greywhale.board.upload import upload_controller
 from greywhale.cli.story import RunningBench, record_motion
 from greywhale.cli.story.learn import Learnt, learn
 from greywhale.cli.story.practice import UNTUNED, practise, tables
-from greywhale.cli.story.recorder import HuntedError
+from greywhale.cli.story.recorder import StoppedError
 from greywhale.commission import CommissioningRequest, commission
 from greywhale.commission.result import CommissioningResult
 from greywhale.files.arm import load_arm
@@ -247,8 +247,8 @@ def tuned(bench: RunningBench, folder: Path, unseen: Mapping[str, Trajectory]) -
     The board has the controllers from before again when this ends.
     """
     nominal, base = load_arm("white_box"), ParameterTable.defaults()
-    logs = practise(bench, nominal, base, folder)
-    learnt = learn(logs[0], logs[1:], tables(base)[: len(logs)], nominal, folder)
+    logs = practise(bench, nominal, base, folder).logs
+    learnt = learn(logs[0], logs[1:], tables(base), nominal, folder)
     run = recorded(bench, folder, "tuned", unseen, learnt.controller)
     with Device(bench.port) as device:
         upload_controller(device, paper_table(UNTUNED))
@@ -258,8 +258,8 @@ def tuned(bench: RunningBench, folder: Path, unseen: Mapping[str, Trajectory]) -
 def recorded(
     bench: RunningBench, folder: Path, when: str, unseen: Mapping[str, Trajectory], controller: Path | None = None
 ) -> Run:
-    """Every motion with this controller, else with what the board has; infinite where the board ended it for its
-    unrest.
+    """Every motion with this controller, else with what the board has; infinite where the board ended it for
+    how the arm moved.
     """
     errors, rests, ripples = {}, {}, {}
     for name, motion in unseen.items():
@@ -267,7 +267,7 @@ def recorded(
         save_leader(leader, motion)
         try:
             log = record_motion(bench, leader, folder / f"{when} {name}.csv", controller).log()
-        except HuntedError:
+        except StoppedError:
             errors[name] = rests[name] = ripples[name] = np.full(JOINTS, np.inf)
             continue
         errors[name] = np.array([joint.mse for joint in evaluate(log).joints])

@@ -15,6 +15,15 @@ from greywhale.board.device import Device
 from greywhale.board.refusal import fault_text, lower_first
 from greywhale.protocol import schema
 
+# Faults of how an arm moves, which its controllers may cause. Every other is one of a part of the arm or of the board.
+OF_THE_MOTION = (
+    schema.Fault.TRACKING,
+    schema.Fault.UNREST,
+    schema.Fault.SPEED,
+    schema.Fault.RUNAWAY,
+    schema.Fault.STALLED,
+)
+
 _TICK_COUNTS = 1 << 32  # after so many the board counts its ticks from 0 again
 # As long as the longest recording: no board that was heard all the time is silent for so many ticks.
 _LONGEST_STEP_TICKS = 86_400_000

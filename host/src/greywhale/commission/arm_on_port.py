@@ -17,7 +17,7 @@ from greywhale.base.types import Floats, Progress
 from greywhale.board.device import Device, hold_ctrl_c
 from greywhale.board.hunting_stop import Hunting, HuntingStop
 from greywhale.board.record import BUSY_LEASE_MS, pose_of, record_led
-from greywhale.board.stream import LeaseLostError
+from greywhale.board.stream import OF_THE_MOTION, LeaseLostError
 from greywhale.board.upload import read_parameters, run_set, upload_set
 from greywhale.files.log import Log, read_evidence
 from greywhale.files.trajectory import Trajectory
@@ -26,9 +26,6 @@ from greywhale.protocol.table import ParameterTable
 
 # A motion is led so often where this computer was too busy to lead it to its end.
 TRIES = 3
-# Faults that a bad controller causes, on an arm that has just moved well. Every other fault is one of the arm or the
-# board, and ends the commissioning.
-OF_A_CONTROLLER = ("tracking", "unrest", "runaway", "stalled")
 
 logger = logging.getLogger(__name__)
 
@@ -120,7 +117,7 @@ class ArmOnPort:
             return PlayedMotion(read_evidence(path), f"joint {hunting.joint} hunted", hunting.joint)
         except UserError:
             status = self._status()
-            if status is None or status.fault.key not in OF_A_CONTROLLER or not path.exists():
+            if status is None or status.fault not in OF_THE_MOTION or not path.exists():
                 raise
             self.device.telemetry(0)
             self.device.ask(schema.ClearFaultRequest())

@@ -6,15 +6,19 @@ are a person's reaches, and validate the model: one with the controllers of the 
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 
 from greywhale.arm import ArmParameters
 from greywhale.base.bench_process import RunningBench
+from greywhale.base.errors import UserError
 from greywhale.base.types import Progress, show_no_progress
 from greywhale.board.record import record_led
-from greywhale.cli.story.recorder import HuntedError, record_motion, record_with
+from greywhale.cli.story.recorder import Recorded, StoppedError, record_motion, record_with
 from greywhale.files import controller as controller_file
 from greywhale.files.leader import save_leader
 from greywhale.files.log import Log
@@ -36,6 +40,14 @@ CHECK_SHARE = 0.6  # of the length of the practice
 FIRST_SEED = 1000  # of the checks; far from the seeds that people give
 
 
+@dataclass(frozen=True)
+class Practice:
+    """The log to fit first, then those to validate; and the motions in which the board stopped the arm, and why."""
+
+    logs: list[Log]
+    left_out: tuple[str, ...]
+
+
 def practise(
     bench: RunningBench,
     nominal: ArmParameters,
@@ -43,11 +55,11 @@ def practise(
     folder: Path,
     seconds: float = PRACTICE_S,
     report: Progress = show_no_progress,
-) -> list[Log]:
-    """Record practice of about `seconds` into `folder`, then the checks: the log to fit first, then those to validate.
+) -> Practice:
+    """Record practice of about `seconds` into `folder`, then the checks.
 
-    `nominal` is what is known of the arm; `base` the parameters that the board has besides its controllers. A check
-    with which the arm hunts proves nothing of the arm: it ends early, and is left out.
+    `nominal` is what is known of the arm; `base` the parameters that the board has besides its controllers. A motion
+    in which the board stopped the arm is left out, and the next log is the one to fit. UserError where it stopped all.
     """
 
     def named(name: str) -> Progress:
@@ -59,19 +71,31 @@ def practise(
     untuned = tables(base)[0]
     designed = design(nominal, pose, table=untuned, seconds=seconds, budget=DESIGN_BUDGET, report=named("practice"))
     save_leader(motion, designed.motion)
-    path, note = folder / "practice.csv", named("practice")
-    first = record_with(  # while the person holds the leader still
-        bench, rest, paper_table(UNTUNED), note, lambda device: record_led(device, path, designed.motion, progress=note)
-    )
-    logs = [first.log()]
+    logs: list[Log] = []
+    left_out: list[str] = []
+
+    def keep(name: str, recording: Callable[[], Recorded]) -> None:
+        try:
+            logs.append(recording().log())
+        except StoppedError as error:
+            left_out.append(f"{name}: {error.message}")
+            report(f"left out: {left_out[-1]}", 1.0)
+
+    def practice() -> Recorded:
+        path, note = folder / "practice.csv", named("practice")
+        return record_with(  # while the person holds the leader still
+            bench, rest, paper_table(UNTUNED), note,
+            lambda device: record_led(device, path, designed.motion, progress=note),
+        )  # fmt: skip
+
+    keep("practice", practice)
     for number, (name, controller) in enumerate(CHECKS):
         leader, path = folder / f"{name}_leader.csv", folder / f"{name}.csv"
         save_leader(leader, human_reaches(FIRST_SEED + number, CHECK_SHARE * seconds))
-        try:
-            logs.append(record_motion(bench, leader, path, paper_table(controller), named(name)).log())
-        except HuntedError:
-            report(f"{name}: the arm hunts with {controller}, so the model is judged without this log", 1.0)
-    return logs
+        keep(name, partial(record_motion, bench, leader, path, paper_table(controller), named(name)))
+    if not logs:
+        raise UserError(f"the arm cannot be identified, because no motion came to its end; the last: {left_out[-1]}")
+    return Practice(logs, tuple(left_out))
 
 
 def tables(base: ParameterTable) -> list[ParameterTable]:

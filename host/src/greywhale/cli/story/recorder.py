@@ -16,7 +16,8 @@ from greywhale.base.errors import UserError
 from greywhale.base.types import Floats, Progress, show_no_progress
 from greywhale.board.device import Device
 from greywhale.board.record import Recording, record
-from greywhale.board.stream import stream
+from greywhale.board.refusal import RefusedError
+from greywhale.board.stream import OF_THE_MOTION, stream
 from greywhale.board.upload import read_parameters, upload_controller
 from greywhale.files.leader import load_leader
 from greywhale.files.log import Log, read_evidence
@@ -29,8 +30,8 @@ READY_RAD = 0.05  # both arms are back at the start within this
 READY_WAIT_S = 20.0  # for both arms to be there
 
 
-class HuntedError(UserError):
-    """The board stopped a recording because a joint swung to and fro with these controllers."""
+class StoppedError(UserError):
+    """The board stopped a recording because of how the arm moved with these controllers, and can go on with others."""
 
 
 @dataclass(frozen=True)
@@ -56,8 +57,8 @@ def record_motion(
 ) -> Recorded:
     """Let the follower follow the whole motion of the file `leader` into `log`; upload `controller` first, if given.
 
-    The log begins LEAD_S before the leader's first movement and ends SETTLE_S after its last. Raises HuntedError where
-    the board stopped the arm for its unrest; the fault is cleared then.
+    The log begins LEAD_S before the leader's first movement and ends SETTLE_S after its last. Raises StoppedError where
+    the board stopped the arm for how it moved; the fault is cleared then.
     """
     length = LEAD_S + load_leader(leader).duration_s + SETTLE_S
     play = partial(record, path=log, seconds=length, enable=True, progress=report)
@@ -83,11 +84,14 @@ def record_with(
         try:
             recording = play(device)
         except UserError as error:
-            if device.status().fault is not schema.Fault.UNREST:
+            if device.status().fault not in OF_THE_MOTION:
                 raise
             device.telemetry(0)
-            device.ask(schema.ClearFaultRequest())
-            raise HuntedError(error.message) from None
+            try:
+                device.ask(schema.ClearFaultRequest())
+            except RefusedError:
+                raise error from None
+            raise StoppedError(error.message) from None
     return Recorded(recording.path, running.crc, recording.rows, recording.dropped, uploaded - started)
 
 

@@ -14,6 +14,8 @@ from greywhale.cli.story.recorder import Recorded
 from greywhale.measure import Evaluation, JointMeasures, more_overshoot
 from greywhale.measure.evaluate import EvaluationFacts
 
+TUNED = "tuned"  # the run with the controllers that were tuned on the model
+
 Measure = tuple[str, Callable[[JointMeasures], str]]  # heading, and a joint's cell
 MEASURES: tuple[Measure, ...] = (
     ("MSE [rad²]", lambda joint: f"{joint.mse:.6f}"),
@@ -39,7 +41,7 @@ class LearntFacts(TypedDict):
     controller: str  # file
     identify_s: float  # wall time
     tune_s: float
-    upload_s: float
+    upload_s: NotRequired[float]  # not where the motion with the tuned controllers was left out
     improvement_of_the_model: list[float]  # over the arm's drawings, a share, on each log, the fitted one first
     doubts: list[str]  # about the model
 
@@ -49,6 +51,7 @@ class DemoAnswer(TypedDict):
     board: str  # mega2560 or nano328
     firmware: str  # version
     runs: list[RunFacts]  # the same motion with each set of controllers
+    left_out: list[str]  # motions in which the board stopped the arm, and why
     pictures: list[str]  # files
     wall_s: float
     learnt: NotRequired[LearntFacts]  # not with --controller
@@ -73,13 +76,14 @@ class Run:
 
 @dataclass(frozen=True)
 class DemoResult:
-    """All runs of the demo; `learnt` where the second one's controllers were tuned in it."""
+    """All runs of the demo that came to their end; `learnt` where controllers were tuned in it."""
 
     leader: str
     board: str
     firmware: str
     runs: tuple[Run, ...]
     learnt: Learnt | None
+    left_out: tuple[str, ...]  # motions in which the board stopped the arm, and why
     pictures: tuple[Path, ...]
     wall_s: float
 
@@ -89,6 +93,7 @@ class DemoResult:
             "board": self.board,
             "firmware": self.firmware,
             "runs": [run.as_dict() for run in self.runs],
+            "left_out": list(self.left_out),
             "pictures": [str(picture) for picture in self.pictures],
             "wall_s": round(self.wall_s, 1),
         }
@@ -98,17 +103,22 @@ class DemoResult:
                 "controller": str(self.learnt.controller),
                 "identify_s": round(self.learnt.identify_s, 1),
                 "tune_s": round(self.learnt.tune_s, 1),
-                "upload_s": round(self.runs[1].recorded.upload_s, 1),
                 "improvement_of_the_model": [one.improvement for one in self.learnt.identification.verdicts],
                 "doubts": list(self.learnt.tuning.model.doubts),
             }
+            if (upload_s := self._upload_s()) is not None:
+                facts["learnt"]["upload_s"] = round(upload_s, 1)
         return facts
+
+    def _upload_s(self) -> float | None:
+        return next((run.recorded.upload_s for run in self.runs if run.name == TUNED), None)
 
     def text(self) -> str:
         """A table a person can read, and where the files are."""
         parts = [f"Leader: {self.leader}. Board: {self.board}, firmware {self.firmware}."]
         if self.learnt is not None:
             parts.append(self._story(self.learnt))
+        parts += [f"Left out, {reason}" for reason in self.left_out]
         parts += [self._table(*measure) for measure in MEASURES]
         if more := more_overshoot(self.runs[0].measures, self.runs[-1].measures):
             parts.append(f"MORE OVERSHOOT than before: {more}.")
@@ -118,12 +128,15 @@ class DemoResult:
 
     def _story(self, learnt: Learnt) -> str:
         fit, *others = learnt.identification.verdicts
-        checked = " and ".join(f"{100 * verdict.improvement:.0f} %" for verdict in others)
+        checked = " and ".join(f"{100 * verdict.improvement:.0f} %" for verdict in others or (fit,))
+        seen = "recordings that it had not seen" if others else "the recording that it was found from"
+        upload_s = self._upload_s()
+        uploaded = "" if upload_s is None else f", uploaded in {upload_s:.1f} s"
         lines = [
             f"Identified from {Path(fit.name).name} in {learnt.identify_s:.0f} s: the error of {learnt.model} is "
-            f"{checked} lower than that of the arm's drawings, on two recordings that it had not seen.",
-            f"Tuned on that model in {learnt.tune_s:.0f} s: {learnt.controller}, uploaded in "
-            f"{self.runs[1].recorded.upload_s:.1f} s. The motion below was used for neither.",
+            f"{checked} lower than that of the arm's drawings, on {seen}.",
+            f"Tuned on that model in {learnt.tune_s:.0f} s: {learnt.controller}{uploaded}. The motion below was used "
+            "for neither.",
             *(f"Doubt: {doubt}" for doubt in learnt.tuning.model.doubts),
         ]
         return "\n".join(lines)

@@ -13,7 +13,7 @@ from pathlib import Path
 
 from greywhale.arm import ArmParameters
 from greywhale.base.bench_process import BenchProcess, RunningBench
-from greywhale.base.errors import BadUsage
+from greywhale.base.errors import BadUsage, UserError
 from greywhale.base.formats.whole import make_folder, write_text
 from greywhale.base.types import NotedProgress, show_no_progress
 from greywhale.board import flash
@@ -22,8 +22,8 @@ from greywhale.board.upload import change_parameters
 from greywhale.cli.story import learn
 from greywhale.cli.story.learn import Learnt
 from greywhale.cli.story.practice import PRACTICE_S, REST_FILE, UNTUNED, practise, tables
-from greywhale.cli.story.recorder import record_motion
-from greywhale.cli.story.result import DemoResult, Run
+from greywhale.cli.story.recorder import StoppedError, record_motion
+from greywhale.cli.story.result import TUNED, DemoResult, Run
 from greywhale.files import controller as controller_file
 from greywhale.files.arm import default_arm, load_arm
 from greywhale.files.leader import load_leader, save_leader
@@ -72,16 +72,19 @@ def run(options: DemoOptions, report: NotedProgress = show_no_progress) -> DemoR
     with BenchProcess(*_bench_options(options)) as bench:
         hello = flash.flash(bench.port, options.board, report=report)
         stage = _Stage(bench, options, arm, report)
-        runs = [stage.follow(leader, "before", "before tuning", paper_table(UNTUNED))]
+        stage.follow(leader, "before", "before tuning", paper_table(UNTUNED))
         learnt = None if options.controller is not None else stage.learn()
         if learnt is None:
             assert options.controller is not None
-            runs.append(stage.follow(leader, "after", options.controller.stem, options.controller))
+            stage.follow(leader, "after", options.controller.stem, options.controller)
         else:
-            runs.append(stage.follow(leader, "after", "tuned", learnt.controller))
+            stage.follow(leader, "after", TUNED, learnt.controller)
             if options.prove:
                 stage.prove(learnt)
-                runs.append(stage.follow(leader, "proven", "proven"))
+                stage.follow(leader, "proven", "proven")
+    runs = stage.runs
+    if not runs:
+        raise UserError(f"there is nothing to show, because no motion came to its end: {'; '.join(stage.left_out)}")
     report("drawing", 0.0)
     result = DemoResult(
         leader=str(options.leader) if options.leader else f"generated, seed {options.seed}",
@@ -89,6 +92,7 @@ def run(options: DemoOptions, report: NotedProgress = show_no_progress) -> DemoR
         firmware=f"{hello.fw_major}.{hello.fw_minor}.{hello.fw_patch}",
         runs=tuple(runs),
         learnt=learnt,
+        left_out=tuple(stage.left_out),
         pictures=(
             _draw(options, [runs[0], runs[-1]], arm.drive.supply),
             *(() if learnt is None else learn.draw(learnt, options.out)),
@@ -108,21 +112,29 @@ class _Stage:
         self._options = options
         self._arm = arm
         self._report = report
+        self.runs: list[Run] = []
+        self.left_out: list[str] = []  # motions in which the board stopped the arm, and why
         self._base = self._tell_board()
 
-    def follow(self, leader: Path, file: str, name: str, controller: Path | None = None) -> Run:
+    def follow(self, leader: Path, file: str, name: str, controller: Path | None = None) -> None:
         """Record the motion that is shown once; without a controller, with those that the board has."""
 
         def note(what: str, fraction: float) -> None:
             self._report(f"{name}: {what}", fraction)
 
-        recorded = record_motion(self._bench, leader, self._options.out / f"{file}.csv", controller, note)
-        return Run(name, recorded, evaluate(recorded.log()))
+        try:
+            recorded = record_motion(self._bench, leader, self._options.out / f"{file}.csv", controller, note)
+        except StoppedError as error:
+            self.left_out.append(f"{name}: {error.message}")
+            return self._report(f"left out: {self.left_out[-1]}", 1.0)
+        self.runs.append(Run(name, recorded, evaluate(recorded.log())))
 
     def learn(self) -> learn.Learnt:
         options = self._options
         nominal = load_arm("white_box") if options.arm is None else learn.arm_as_drawn(self._arm)
-        logs = practise(self._bench, nominal, self._base, options.out, options.practice_s, self._report)
+        practice = practise(self._bench, nominal, self._base, options.out, options.practice_s, self._report)
+        self.left_out += practice.left_out
+        logs = practice.logs
         known = tables(self._base)
         return learn.learn(logs[0], logs[1:], known, nominal, options.out, options.budget, report=self._report)
 
