@@ -36,6 +36,7 @@ class Potentiometers {
   void set_wiring(std::size_t joint, Wiring wiring) { wiring_.at(joint) = wiring; }
   void set_noise(std::size_t joint, double rms) { pots_.at(joint).noise = rms; }  // V
   Wiring wiring(std::size_t joint) const { return wiring_.at(joint); }
+  double shown(std::size_t joint) const { return shown_[joint].after; }  // rad, at the last reading, without noise
 
   // Voltages at the converter in mV, 0 to the supply. Each call is a reading, `interval` after the one before, and
   // draws new noise. At the first reading the wipers stand in the middle of their play, and nothing lags.

@@ -22,6 +22,7 @@
 #include "closed_loop/experiment.h"
 #include "closed_loop/plant_columns.h"
 #include "closed_loop/plant_row.h"
+#include "closed_loop/readings.h"
 #include "closed_loop/swings.h"
 #include "share_out.h"
 
@@ -143,6 +144,19 @@ nb::tuple leader_readings(const loop::Settings& settings, const loop::Timing& ti
   return nb::make_tuple(reference.numpy(), leader.numpy());
 }
 
+// Times and plus of the four lines.
+nb::object follower_lines(const loop::Settings& settings, const loop::Pots4& leader_pots, double leader_supply,
+                          const loop::Pots4& follower_pots, double follower_supply) {
+  Array<double> found({2, kJoints});
+  const loop::Lines lines =
+      loop::follower_lines(settings, leader_pots, leader_supply, follower_pots, follower_supply);
+  for (std::size_t i = 0; i < kJoints; ++i) {
+    found.data()[i] = lines[i].times;
+    found.data()[kJoints + i] = lines[i].plus;
+  }
+  return found.numpy();
+}
+
 // The vector form of the law for sixteen controllers side by side; tests compare it with the firmware's own.
 nb::object sixteen_laws(const In<std::int32_t, nb::shape<loop::kBlock, loop::kControllerColumns>>& controllers,
                         int period_ms, const In<std::int32_t, nb::shape<-1, loop::kBlock>>& leader,
@@ -242,6 +256,9 @@ void bind_closed_loop(nb::module_& m) {
   m.def("leader_readings", &leader_readings, nb::kw_only(), "settings"_a, "timing"_a, "pots"_a, "pot_supply"_a,
         "seed"_a, "angles"_a.noconvert(),
         "The leader's angles in every slice to q12 readings and true angles at every tick.");
+  m.def("follower_lines", &follower_lines, nb::kw_only(), "settings"_a, "leader_pots"_a, "leader_supply"_a,
+        "follower_pots"_a, "follower_supply"_a,
+        "Times and plus (2 x 4), rad: the follower's angle that reads as times x the leader's angle + plus does.");
   m.def("sixteen_laws", &sixteen_laws, nb::kw_only(), "controllers"_a.noconvert(), "period_ms"_a,
         "leader"_a.noconvert(), "follower"_a.noconvert(), "limit_mv"_a.noconvert(), "instructions"_a,
         "The batch kernel's form of the law, in mV; for tests.");

@@ -200,7 +200,7 @@ class Run {
 
   void add(std::size_t tick, Measures& total) const {
     for (std::size_t i = 0; i < kJoints; ++i) {
-      const double error = x_.leader[tick * kJoints + i] - state_.q[i];
+      const double error = x_.leader[tick * kJoints + i] - pots_.shown(i);
       total.mse[i] += error * error;
       total.itae[i] += kTick * x_.weight[tick] * std::fabs(error);
       total.itau[i] += kTick * x_.weight[tick] * std::fabs(volts_[i]);

@@ -71,7 +71,7 @@ struct Experiment {
   double gap[kJoints];                           // -1..1, where in its gap each gear then stands
   std::size_t ticks;
   const std::int16_t* reference;  // ticks x 4: the leader's angle as the firmware reads it, q12
-  const double* leader;           // ticks x 4: its true angle when the tick begins, rad
+  const double* leader;           // ticks x 4: the follower's angle that reads as the leader does then, rad
   const double* weight;           // ticks: of |e| and |u| in ITAE and ITAU, s
   const float* noise;             // (4 x ticks + 1) x 4: of the pots in counts, for lanes (noise_of); null: none
 };

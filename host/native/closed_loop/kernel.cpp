@@ -60,7 +60,7 @@ class Run {
     for (std::size_t tick = 0; tick < x_.ticks; ++tick) {
       Float error[kJoints];
       for (std::size_t i = 0; i < kJoints; ++i) {
-        error[i] = all(static_cast<float>(x_.leader[tick * kJoints + i])) - to_float(state_[i].q) * all(kUnit);
+        error[i] = all(static_cast<float>(x_.leader[tick * kJoints + i])) - shown(i);
       }
       control(tick);
       act(tick);
@@ -85,6 +85,16 @@ class Run {
   // A pot's place in converter counts at an angle.
   GREYWHALE_INLINE Float counts(std::size_t i, Int q) const {
     return to_float(q) * all(pots_.gain[i]) + all(pots_.offset[i]);
+  }
+
+  // The angle that a pot shows, rad.
+  GREYWHALE_INLINE Float shown(std::size_t i) const {
+    const Float angle = to_float(state_[i].q) * all(kUnit);
+    if (__builtin_expect(sensors_.on, 0)) {
+      const Float behind = (sensors_.after[i] - all(pots_.offset[i])) * all(kUnit / pots_.gain[i]);
+      return choose(sensors_.play[i] + sensors_.kept[i] > all(0.0f), behind, angle);
+    }
+    return angle;
   }
 
   template <bool kCurved>

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "arm/elementary.h"
+#include "closed_loop/readings.h"
 #include "experiments.h"
 
 namespace greywhale::web {
@@ -97,12 +98,15 @@ EXPORT(add) unsigned exported_add() {
   x.ticks = reader.size();
   kept->weight = reader.some(x.ticks);
   const std::vector<double> rows = reader.some(reader.left());
-  std::copy_n(rows.begin(), kJoints, x.home);
   kept->reference.resize(x.ticks * kJoints);
   kept->leader.resize(x.ticks * kJoints);
   const std::vector<double> slices = slices_of(rows, apart, wait, x.ticks * loop::kSlices);
   loop::read_leader(x.settings, x.timing, {leader_pots, leader_supply, leader_seed}, slices.data(), x.ticks,
                     kept->reference.data(), kept->leader.data());
+  const loop::Lines lines = loop::follower_lines(x.settings, leader_pots, leader_supply, x.pots, x.pot_supply);
+  for (std::size_t n = 0; n < kept->leader.size(); ++n)
+    kept->leader[n] = lines[n % kJoints].times * kept->leader[n] + lines[n % kJoints].plus;
+  std::copy_n(kept->leader.begin(), kJoints, x.home);
   x.reference = kept->reference.data();
   x.leader = kept->leader.data();
   x.weight = kept->weight.data();

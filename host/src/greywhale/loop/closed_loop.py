@@ -4,19 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 import numpy.typing as npt
 
 from greywhale import _native
-from greywhale.arm import PotentiometerBank
+from greywhale.arm import ArmParameters, PotentiometerBank
 from greywhale.arm.plant import native_potentiometers
 from greywhale.arm.plants import Plants
 from greywhale.base.errors import UserError
 from greywhale.base.types import Controllers, Floats
+from greywhale.files.trajectory import Trajectory
 from greywhale.loop.leader import SLICES_PER_TICK
 from greywhale.protocol.firmware import ANGLE_LSB, JOINTS, TICK_S, pwm_steps
+from greywhale.protocol.joints import unused
 from greywhale.protocol.table import ParameterTable
 
 Counts = npt.NDArray[np.int16]
@@ -66,8 +68,9 @@ DEFAULT_TIMING = Timing()
 
 @dataclass(frozen=True)
 class Result:
-    """A row per candidate and a column per joint. Measures are taken with the true angles, e = leader - follower.
+    """A row per candidate and a column per joint. Measures compare readings, as a log does: e = leader - follower.
 
+    Noise, a converter's steps and a bent potentiometer are not in e; a zero angle, play and lag are.
     A candidate whose motion leaves the range of numbers has `diverged` set and 1e9 in every measure.
     """
 
@@ -82,10 +85,50 @@ class Result:
 
 @dataclass(frozen=True)
 class Readings:
-    """The leader as the board sees it, and where the leader is: a row a tick."""
+    """The leader as the board sees it, and the angle that a follower's is measured against: a row a tick."""
 
     reference: Counts  # (ticks, 4) in ANGLE_LSB
     leader: Floats  # (ticks, 4) rad
+
+
+@dataclass(frozen=True)
+class FollowerLines:
+    """The follower's angle that the board reads as an angle of the leader: times x the leader's + plus, (4,) each.
+
+    It is another angle where the zero angles of both sides are not those of the board's table.
+    """
+
+    times: Floats
+    plus: Floats  # rad
+
+    @classmethod
+    def of(cls, arm: ArmParameters, table: ParameterTable) -> Self:
+        leader, follower = arm.leader_pots, arm.follower_pots
+        lines = _native.follower_lines(
+            settings=settings_of(table),
+            leader_pots=native_potentiometers(leader),
+            leader_supply=leader.supply,
+            follower_pots=native_potentiometers(follower),
+            follower_supply=follower.supply,
+        )
+        times, plus = np.asarray(lines, dtype=np.float64)
+        still = list(unused(arm.joints_in_use))
+        times[still], plus[still] = 1.0, 0.0
+        return cls(times, plus)
+
+    def follower(self, leader: Floats) -> Floats:
+        """Angles (..., 4) of the follower."""
+        angles: Floats = self.times * leader + self.plus
+        return angles
+
+    def motion(self, leader: Trajectory) -> Trajectory:
+        """A motion of the leader as the follower has to make it."""
+        return Trajectory(leader.time_s, self.follower(leader.angles))
+
+    def leader(self, follower: Floats, joint: int) -> Floats:
+        """Angles of the leader's joint, by the follower's."""
+        angles: Floats = (follower - self.plus[joint]) / self.times[joint]
+        return angles
 
 
 def read_leader(

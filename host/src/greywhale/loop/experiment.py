@@ -12,7 +12,16 @@ from greywhale.arm.plants import check_plants, column, plant_row
 from greywhale.base.errors import UserError
 from greywhale.base.types import Floats
 from greywhale.files.trajectory import Trajectory
-from greywhale.loop.closed_loop import DEFAULT_TIMING, ClosedLoop, Result, Timing, read_leader, with_right_motors
+from greywhale.loop.closed_loop import (
+    DEFAULT_TIMING,
+    ClosedLoop,
+    FollowerLines,
+    Readings,
+    Result,
+    Timing,
+    read_leader,
+    with_right_motors,
+)
 from greywhale.loop.controllers import check_controllers, controllers_of
 from greywhale.loop.leader import SLICES_PER_TICK, leader_slices
 from greywhale.protocol.firmware import JOINTS, TICK_S
@@ -29,7 +38,7 @@ class Experiment:
     use stay at 0. `table` is the parameter table of the board; its controllers are the candidate unless others are
     given, and its motors turn as the arm's, whatever their wires. With `noise` False the potentiometers are quiet.
     `weight_s` (ticks,) weighs the sizes of e and u in ITAE and ITAU; by default it is the time since the leader may
-    move.
+    move. The attribute `leader` is the follower's angle that reads as the leader does; there the follower starts.
     """
 
     def __init__(
@@ -55,9 +64,11 @@ class Experiment:
         else:
             slices = _check_slices(leader).copy()
         slices[:, unused(arm.joints_in_use)] = 0.0
-        self.home = slices[0].copy()
+        self.lines = FollowerLines.of(arm, self.table)
         readings = read_leader(self.table, arm.leader_pots, slices, seed=seed, noise=noise, timing=timing)
+        readings = Readings(readings.reference, np.ascontiguousarray(self.lines.follower(readings.leader)))
         self.reference, self.leader = readings.reference, readings.leader
+        self.home = self.leader[0].copy()
         time_s = np.arange(len(self.leader), dtype=np.float64) * TICK_S
         self.weight_s = _check_weight(weight_s, time_s, wait_s)
         gap = np.random.default_rng(seed).uniform(-1.0, 1.0, JOINTS) if gap_position is None else np.array(gap_position)

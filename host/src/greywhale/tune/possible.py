@@ -49,9 +49,8 @@ def lateness_s(table: ParameterTable) -> float:
 
 def _least_errors(drill: TrainingMotion, plants: Floats, late_s: float, threads: int, judging: TuningLimits) -> Floats:
     """The ideal controller's error on every plant (plants, 4) in rad, measured like a candidate's."""
-    leader, angles = follow_ideally(
-        drill.motion, plants, delay_s=late_s, wait_s=WAIT_S, threads=threads, limits=judging.floor
-    )
+    led = drill.experiment.lines.motion(drill.motion)
+    leader, angles = follow_ideally(led, plants, delay_s=late_s, wait_s=WAIT_S, threads=threads, limits=judging.floor)
     distance = np.abs(leader - angles)
     weight = drill.experiment.weight_s[:, None]
     mean, square = (weight * distance).sum(axis=1) / weight.sum(), np.square(distance).mean(axis=1)

@@ -16,8 +16,10 @@ from greywhale.files.log import Log
 from greywhale.files.log.layout import Origin
 from greywhale.files.trajectory import Trajectory
 from greywhale.loop import Experiment, human_reaches, multi_steps, steps
+from greywhale.loop.closed_loop import shown_angles
 from greywhale.measure import Evaluation, evaluate
 from greywhale.measure.evaluate import EvaluationFacts
+from greywhale.protocol.firmware import TICK_S
 from greywhale.protocol.joints import Joints
 from greywhale.protocol.table import ParameterTable
 from greywhale.tune.judge.floor import Floor, saturation_floor
@@ -103,10 +105,11 @@ def judge_held_out(
         experiment = Experiment(motion, arm, table=table, seed=7, wait_s=WAIT_S)
         result = experiment.run_exact(np.stack([before, after]), plant, every=EVERY, threads=threads)
         leader = experiment.leader[::EVERY]
-        angles = result.angles.astype(np.float64)
+        angles = shown_angles(result.angles, np.repeat(plant[None], 2, axis=0), EVERY * TICK_S)
         floor = None
         if judging.floors:
-            floor = saturation_floor(motion, plant, wait_s=WAIT_S, threads=threads, limits=judging.floor)
+            led = experiment.lines.motion(motion)
+            floor = saturation_floor(led, plant, wait_s=WAIT_S, threads=threads, limits=judging.floor)
         judged.append(
             HeldOut(
                 name=name,

@@ -18,6 +18,7 @@ from greywhale.base.errors import BadUsage
 from greywhale.base.types import Floats
 from greywhale.files.trajectory import Trajectory
 from greywhale.loop import Experiment, human_reaches
+from greywhale.loop.closed_loop import FollowerLines
 from greywhale.loop.leader_motions import minimum_jerk
 from greywhale.protocol.firmware import JOINTS
 from greywhale.protocol.table import ParameterTable
@@ -98,14 +99,15 @@ def _training_motion(
 def reach(
     arm: ArmParameters, table: ParameterTable, plants: Floats, limits: TrainingLimits = TUNING_LIMITS.training
 ) -> tuple[Floats, Floats]:
-    """The lowest and highest angle (4,) that the table's limits and all plants' stops allow, some distance kept.
+    """The leader's lowest and highest angle (4,) that the table's limits and all plants' stops allow, at a distance.
 
     Both are 0 for a joint that is not in use.
     """
     low, high = np.zeros(JOINTS), np.zeros(JOINTS)
+    lines = FollowerLines.of(arm, table)
     for joint in arm.joints_in_use:
         ends = [table.physical(f"joint{joint}.limit_{side}") for side in ("min", "max")]
-        stops = [plants[:, column(f"stop_{side}", joint)] for side in ("min", "max")]
+        stops = [lines.leader(plants[:, column(f"stop_{side}", joint)], joint) for side in ("min", "max")]
         low[joint] = max(ends[0], float(stops[0].max())) + limits.clear_rad
         high[joint] = min(ends[1], float(stops[1].min())) - limits.clear_rad
         if high[joint] - low[joint] < limits.least_range_rad:
