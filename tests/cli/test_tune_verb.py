@@ -154,6 +154,10 @@ def assert_bounds_hold_even_for_what_the_board_ran_before(answer: dict[str, Any]
             {"margins_hold": False, "notes": [f"joint {joint}, at rest: it turns round" for joint in range(4)]},
             ["margins do not hold: joint 0, at rest; joint 1, at rest; joint 2, at rest and 1 more"],
         ),
+        (
+            {"follows_worse": ["joint 3 (wrist roll) on steps, 3.9 times the error"]},
+            ["follows worse than before the tuning: joint 3 (wrist roll) on steps, 3.9 times the error."],
+        ),
     ],
 )
 def test_an_upload_warns_where_board_and_tuning_differ(
@@ -172,12 +176,13 @@ def test_an_upload_warns_where_board_and_tuning_differ(
 
 
 @pytest.mark.parametrize(("answer", "code"), [(False, 1), (True, 0)])
-def test_a_terminal_is_asked_before_controllers_are_stored_whose_margins_fail(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, answer: bool, code: int
+@pytest.mark.parametrize("tuning", [{"margins_hold": False}, {"follows_worse": ["joint 0 (base yaw) on steps, ..."]}])
+def test_a_terminal_is_asked_before_controllers_are_stored_that_are_worse(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, answer: bool, code: int, tuning: dict[str, Any]
 ) -> None:
     monkeypatch.setattr("greywhale.cli.upload.sys.stdin.isatty", lambda: True)
     monkeypatch.setattr("greywhale.cli.upload.Terminal.agrees", lambda terminal, question: answer)
-    controller.save(tmp_path / "c.toml", default_controller(), tuning={"margins_hold": False})
+    controller.save(tmp_path / "c.toml", default_controller(), tuning=tuning)
     with FakeBoard() as board:
         assert entry.run(["upload", str(tmp_path / "c.toml"), "--port", board.port]) == code
         assert (board.asked(schema.ParamSaveRequest) > 0) is answer

@@ -105,6 +105,7 @@ def tuned(model: Model, before: Controllers, after: Controllers, **changes: Any)
         margins_before=(),
         margins=(),
         held_out=(),
+        worse=(),
         notes=(),
     )
     return replace(plain, **changes)

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
+from greywhale.files.controller import load
+from greywhale.tune.judge.following import Worse
 from greywhale.tune.judge.margins import TEETH
 from greywhale.tune.report.controller_file import save
 from greywhale.tune.report.summary import summary
@@ -62,6 +64,21 @@ def test_steps_have_overshoot_and_settling_time_and_more_overshoot_than_before_s
     save(worse, tmp_path / "controller.toml")
     assert f"# {said}" in (tmp_path / "controller.toml").read_text(encoding="utf-8").splitlines()
     assert "OVERSHOOT" not in summary(outcome)
+
+
+def test_a_joint_that_follows_worse_is_named_in_text_and_file(outcome: TuningResult, tmp_path: Path) -> None:
+    worse = replace(outcome, worse=(Worse(3, "steps", 3.94), Worse(3, "slow following", 1.2)))
+    said = (
+        "FOLLOWS WORSE than before, by the model: joint 3 (wrist roll) on steps, 3.9 times the error; "
+        "joint 3 (wrist roll) on slow following, 1.2 times the error."
+    )
+    assert said in summary(worse).splitlines()
+    save(worse, tmp_path / "controller.toml")
+    tuning = load(tmp_path / "controller.toml").tuning
+    assert tuning is not None
+    assert tuning["follows_worse"] == [one.words for one in worse.worse]
+    assert f"# {said}" in (tmp_path / "controller.toml").read_text(encoding="utf-8").splitlines()
+    assert "FOLLOWS WORSE" not in summary(outcome)
 
 
 def test_what_does_not_come_to_rest_is_named(outcome: TuningResult) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import sys
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -21,7 +21,7 @@ from greywhale.files import controller as controller_file
 from greywhale.protocol.ports import choose_port
 from greywhale.protocol.table import ParameterTable
 
-MOST_NAMED = 3  # margins in the warning
+MOST_NAMED = 3  # margins or joints in a warning
 _RECORD = Step("record", "Record how the arm follows now", {"enable": True, "out": "following.csv"})
 
 
@@ -33,7 +33,7 @@ class UploadAnswer(OnPort, UploadFacts):
 
 @click.command("upload")
 @click.argument("controller", type=FILE, shell_complete=completion.controllers)
-@option("--yes", "-y", is_flag=True, help="Store it without a question, also where a joint may swing.")
+@option("--yes", "-y", is_flag=True, help="Store it without a question, also where a joint may swing or follow worse.")
 @port_option
 @json_option(UploadAnswer)
 def command(controller: Path, yes: bool, port: str | None, as_json: bool) -> None:
@@ -41,8 +41,8 @@ def command(controller: Path, yes: bool, port: str | None, as_json: bool) -> Non
 
     Those are before_tuning, and table_8, table_9 and table_10 of the paper.
     The board takes the set over only when all of it has arrived and passed its checks, with the motors off. All other
-    parameters (potentiometers, limits, directions) keep their values. Where a joint may swing that did not before, a
-    terminal is asked first.
+    parameters (potentiometers, limits, directions) keep their values. Where a joint may swing that did not before, or
+    follow worse, a terminal is asked first.
     """
     checked = controller_file.load(controller)
     with Device(choose_port(port)) as device:
@@ -51,7 +51,7 @@ def command(controller: Path, yes: bool, port: str | None, as_json: bool) -> Non
         warnings = _warnings(checked.tuning or {}, running)
         for warning in warnings:  # while Ctrl-C still leaves everything as it was
             tell(f"Warning: {warning}")
-        asked = _margins_fail(checked.tuning or {}) and not (yes or as_json) and sys.stdin.isatty()
+        asked = _is_worse(checked.tuning or {}) and not (yes or as_json) and sys.stdin.isatty()
         if asked and not _agrees():
             raise UserError(f"{device.port}: nothing was uploaded; the board keeps its controllers.")
         with progress(brief=True) as report:
@@ -76,6 +76,8 @@ def _warnings(tuning: Mapping[str, Any], table: ParameterTable) -> list[str]:
         warnings.append("the tuning of this controller is not finished.")
     if _margins_fail(tuning):
         warnings.append(f"a joint may swing if the arm is not quite as its model; {_failing(tuning)}.")
+    if worse := _worse_followers(tuning):
+        warnings.append(f"by its model, a joint follows worse than before the tuning: {_some(worse)}.")
     made_for = tuning.get("board")
     if isinstance(made_for, str) and made_for != table.board.key:
         warnings.append(f"it was tuned for the board {made_for}, but this board is a {table.board.key}.")
@@ -98,11 +100,24 @@ def _margins_fail(tuning: Mapping[str, Any]) -> bool:
     return tuning.get("margins_hold") is False
 
 
+def _worse_followers(tuning: Mapping[str, Any]) -> list[str]:
+    found = tuning.get("follows_worse")
+    return list(map(str, found)) if isinstance(found, list) else []
+
+
+def _is_worse(tuning: Mapping[str, Any]) -> bool:
+    """True for a tuning that is worse in some respect than what was before it."""
+    return _margins_fail(tuning) or bool(_worse_followers(tuning))
+
+
+def _some(found: Sequence[str]) -> str:
+    """The first few, and how many more there are."""
+    more = f" and {len(found) - MOST_NAMED} more" if len(found) > MOST_NAMED else ""
+    return "; ".join(found[:MOST_NAMED]) + more
+
+
 def _failing(tuning: Mapping[str, Any]) -> str:
     """The first few margins that do not hold, each as joint and case."""
     notes = tuning.get("notes")
     failing = [str(note).partition(":")[0] for note in notes] if isinstance(notes, list) else []
-    more = f" and {len(failing) - MOST_NAMED} more" if len(failing) > MOST_NAMED else ""
-    if not failing:
-        return "a margin does not hold"
-    return f"these margins do not hold: {'; '.join(failing[:MOST_NAMED])}{more}"
+    return f"these margins do not hold: {_some(failing)}" if failing else "a margin does not hold"

@@ -9,7 +9,7 @@
 3. `every corner`: a narrow search from there, in which each corner and factor is free.
 4. The best few of every joint are judged anew, on all plants and with other noise (`judge/choose.py`). The controller
    from before the tuning competes too, and the bench's own arithmetic has the last word, so no joint ends worse than it
-   began. A joint that falls short there is searched once more.
+   began, and none follows a class of motions less closely. A joint that falls short there is searched once more.
 
 Margins are looked at on the search's two plants alone. Of many drawn arms the softest would decide, and it is softer
 than the arm by more than recordings err.
@@ -34,9 +34,10 @@ from greywhale.optimise.shift_invariant import ShiftInvariantWolfWhale
 from greywhale.protocol.joints import unused
 from greywhale.protocol.table import CONTROLLER_COLUMNS
 from greywhale.tune.judge.choose import CachedJudge, Judge, choose, next_best
+from greywhale.tune.judge.following import ErrorsBefore, worse_followers
 from greywhale.tune.judge.held_out import judge_held_out
 from greywhale.tune.judge.margins import MOVING, Margin, Margins, penalty
-from greywhale.tune.judge.standard import Standard
+from greywhale.tune.judge.standard import Standard, hunting_everywhere
 from greywhale.tune.method import Costs, Judgement
 from greywhale.tune.model import Model
 from greywhale.tune.possible import scale_of
@@ -113,6 +114,8 @@ class DefaultMethod:
         self.margins = self._margins(searching=True)
         self.margins_before = self.judging_margins.check(self.start)
         self.standard = Standard.of(self.margins_before, self.table.supply_v, self.limits.quiet, self.limits)
+        hunts = hunting_everywhere(self.margins_before)
+        self.errors_before = {exact: ErrorsBefore.of(self.judging, self.start, hunts, exact) for exact in (False, True)}
         self.found = SearchState.nothing(self.start)
 
     def _motions(self, seed: int) -> tuple[TrainingMotion, ...]:
@@ -182,12 +185,15 @@ class DefaultMethod:
 
     def judge_costs(self, controllers: Controllers, exact: bool = False) -> Floats:
         """Work out the costs (n, 4) on all plants, with other noise; `exact`: in the bench's own arithmetic."""
-        costs: Floats = self.judging.costs(controllers, exact=exact)
+        found = self.judging.follow(controllers, exact)
+        costs = self.judging.costs_of(found)
         unrest = self.judging_margins.unrest(controllers, exact=exact)
         restless, limits = penalty(unrest, self.standard.quiet_v, self.limits), self.limits.choice
         if self.limits.by_the_arm:
             return costs + limits.unrest_weight_on_arm * restless
-        short = self.standard.falls_short(unrest, (controllers == self.start).all(axis=2))
+        kept = (controllers == self.start).all(axis=2)
+        behind = (self.errors_before[exact].excess(found) > 0.0) & ~kept
+        short: Flags = self.standard.falls_short(unrest, kept) | behind
         return costs + restless + limits.unfit_cost * short
 
     def _contenders(self) -> Controllers:
@@ -262,8 +268,11 @@ class DefaultMethod:
         def costs(controllers: Controllers) -> Floats:
             unrest = self.margins.unrest(controllers)
             restless = penalty(unrest, self.standard.quiet_v, self.limits, strict=True)
-            return self.objective.costs(controllers) + restless
+            found = self.objective.follow(controllers)
+            behind = self.errors_before[False].excess(found)
+            return self.objective.costs_of(found) + restless + limits.strict_fail_price * np.ceil(behind) + behind
 
+        limits = self.limits.margins
         search = LockstepSearch(costs, SearchState.nothing(rows))
         search.try_again(AGAIN.name)
         stage = replace(AGAIN, groups=(np.flatnonzero(short).tolist(),))
@@ -292,6 +301,9 @@ class DefaultMethod:
         task.report("judging", 0.8)
         plant = model.plants[0]
         held_out = judge_held_out(model.arm, self.table, plant, task.before, after, task.threads, self.limits)
+        worse = worse_followers(
+            held_out, self.judging.drills, plant, task.before, after, model.arm.joints_in_use, task.threads
+        )
         task.report("judging", 1.0)
         return Judgement(
             after=after,
@@ -301,6 +313,7 @@ class DefaultMethod:
             margins_before=margins_before,
             margins=chosen.margins,
             held_out=held_out,
+            worse=worse,
         )
 
 

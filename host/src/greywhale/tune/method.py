@@ -7,6 +7,7 @@ from typing import Any, Protocol
 
 from greywhale.base.types import Controllers
 from greywhale.protocol.table import ParameterTable
+from greywhale.tune.judge.following import Worse
 from greywhale.tune.judge.held_out import HeldOut
 from greywhale.tune.judge.margins import Margin
 from greywhale.tune.search.journal import TuningJournal
@@ -26,6 +27,7 @@ class Judgement:
     margins_before: tuple[Margin, ...] = field(default=(), repr=False)
     margins: tuple[Margin, ...] = field(default=(), repr=False)
     held_out: tuple[HeldOut, ...] = ()
+    worse: tuple[Worse, ...] = ()
 
 
 class Method(Protocol):

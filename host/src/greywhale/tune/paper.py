@@ -29,6 +29,7 @@ from greywhale.base.types import Controllers, Floats
 from greywhale.files.trajectory import Trajectory
 from greywhale.loop import Experiment, steps
 from greywhale.protocol.firmware import JOINTS
+from greywhale.tune.judge.following import worse_followers
 from greywhale.tune.judge.held_out import judge_held_out
 from greywhale.tune.judge.margins import Margins
 from greywhale.tune.method import Costs, Judgement
@@ -126,6 +127,7 @@ class PaperMethod:
             margins_before=margins_before,
             margins=margins_after,
             held_out=held_out,
+            worse=worse_followers(held_out, (), plant, task.before, best, task.model.arm.joints_in_use, task.threads),
         )
 
 

@@ -8,6 +8,7 @@ from typing import Annotated, TypedDict
 from greywhale.base.types import Controllers, PerJoint
 from greywhale.protocol.schema import PARAMETER_BY_NAME
 from greywhale.protocol.table import CONTROLLER_COLUMNS, ParameterTable, physical
+from greywhale.tune.judge.following import Worse, WorseFacts
 from greywhale.tune.judge.held_out import HeldOut, HeldOutFacts
 from greywhale.tune.judge.margins import AT_REST, TEETH, Margin, MarginFacts
 from greywhale.tune.model import Model
@@ -62,6 +63,7 @@ class TuningFacts(TypedDict):
     margins_before: list[MarginFacts]  # whether each joint comes to rest: a scenario and a joint each
     margins: list[MarginFacts]  # with the controllers after; empty where the tuning was interrupted
     held_out: list[HeldOutFacts]  # motions that nobody trained on
+    follows_worse: list[WorseFacts]  # joints that the model sees follow a motion worse than before
     curves: PerJoint[CurveFacts]
     travel: TravelFacts | None  # null: the board's own numbers stay
     notes: list[str]
@@ -91,6 +93,7 @@ class TuningResult:
     margins_before: tuple[Margin, ...] = field(repr=False)
     margins: tuple[Margin, ...] = field(repr=False)
     held_out: tuple[HeldOut, ...]
+    worse: tuple[Worse, ...]  # joints that follow a motion worse than before, by the model
     notes: tuple[str, ...]
 
     @property
@@ -121,6 +124,12 @@ class TuningResult:
         resting = all(margin.holds for margin in self.margins if margin.scenario == AT_REST)
         return resting and all(margin.scenario == TEETH for margin in self.lost_margins)
 
+    @property
+    def worse_sentences(self) -> list[str]:
+        """A sentence for the joints that follow worse than before, if there are any."""
+        said = "; ".join(one.words for one in self.worse)
+        return [f"FOLLOWS WORSE than before, by the model: {said}."] if said else []
+
     def as_dict(self) -> TuningFacts:
         return {
             "model": self.model.name,
@@ -139,6 +148,7 @@ class TuningResult:
             "margins_before": [margin.as_dict() for margin in self.margins_before],
             "margins": [margin.as_dict() for margin in self.margins],
             "held_out": [one.as_dict() for one in self.held_out],
+            "follows_worse": [one.as_dict() for one in self.worse],
             "curves": [{"evaluations": list(one.evaluations), "cost": list(one.cost)} for one in self.curves],
             "travel": None if self.model.travel is None else self.model.travel.as_dict(),
             "notes": list(self.notes),

@@ -128,5 +128,6 @@ def _outcome(task: TuningRequest, method: Method, judged: Judgement, complete: b
         margins_before=judged.margins_before,
         margins=judged.margins,
         held_out=judged.held_out,
+        worse=judged.worse,
         notes=judged.notes,
     )

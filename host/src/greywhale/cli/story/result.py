@@ -137,6 +137,7 @@ class DemoResult:
             f"{checked} lower than that of the arm's drawings, on {seen}.",
             f"Tuned on that model in {learnt.tune_s:.0f} s: {learnt.controller}{uploaded}. The motion below was used "
             "for neither.",
+            *learnt.tuning.worse_sentences,
             *(f"Doubt: {doubt}" for doubt in learnt.tuning.model.doubts),
         ]
         return "\n".join(lines)

@@ -71,6 +71,15 @@ class Standard:
         return np.asarray(short)
 
 
+def hunting_everywhere(margins: tuple[Margin, ...]) -> Flags:
+    """True where a joint comes to rest on no plant at all, (4,)."""
+    found = np.zeros(JOINTS, dtype=bool)
+    for margin in margins:
+        if margin.scenario == AT_REST:
+            found[margin.joint] = margin.plants_failing == margin.plants
+    return found
+
+
 def _seen(margins: tuple[Margin, ...]) -> tuple[dict[str, Counts], Floats]:
     """On how many plants each joint fails in each scenario, and its ripple at rest: (4,) each."""
     failing: dict[str, Counts] = {}

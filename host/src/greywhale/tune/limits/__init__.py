@@ -11,7 +11,7 @@ from dataclasses import dataclass, field, replace
 from greywhale.base.limits import limit
 from greywhale.identify.limits import IDENTIFICATION_LIMITS, IdentificationLimits
 from greywhale.measure.limits import SWING_BOUNDS, SwingBounds
-from greywhale.tune.limits.judge import ChoiceLimits, FloorLimits, MarginLimits
+from greywhale.tune.limits.judge import ChoiceLimits, FloorLimits, FollowingLimits, MarginLimits
 from greywhale.tune.limits.model import ModelLimits, TravelLimits
 from greywhale.tune.limits.search import CostLimits, SpaceLimits, TrainingLimits
 
@@ -22,6 +22,7 @@ __all__ = [
     "ChoiceLimits",
     "CostLimits",
     "FloorLimits",
+    "FollowingLimits",
     "MarginLimits",
     "ModelLimits",
     "SpaceLimits",
@@ -46,6 +47,7 @@ class TuningLimits:
     floor: FloorLimits = field(default=FloorLimits())
     margins: MarginLimits = field(default=MarginLimits())
     choice: ChoiceLimits = field(default=ChoiceLimits())
+    following: FollowingLimits = field(default=FollowingLimits())
     swings: SwingBounds = SWING_BOUNDS
     identification: IdentificationLimits = IDENTIFICATION_LIMITS  # of the models that it is for
 

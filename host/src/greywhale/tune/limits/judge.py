@@ -123,3 +123,21 @@ class ChoiceLimits:
         1.25, "times", "ripple may be so much more where quicker neighbours shake a joint", MEASURED_IN_SEARCHES
     )
     worse_in_report: float = limit(1.02, "times the error before", "the report calls an error worse from here on")
+
+
+@dataclass(frozen=True)
+class FollowingLimits:
+    """How much worse than before a joint may follow (`judge/following.py`)."""
+
+    error_slack: float = limit(
+        1.05,
+        "times the error before",
+        "a changed joint may follow no class of training motions less closely, unless it hunted at rest: noise and "
+        "neighbours make this difference",
+    )
+    follows_worse: float = limit(
+        1.1, "times the mean squared error before", "from here on a person is told and, before an upload, asked"
+    )
+    unseen_rad: float = limit(
+        1e-3, "rad rms", "and only if the error grew by this: a step of a potentiometer's reading is five times that"
+    )

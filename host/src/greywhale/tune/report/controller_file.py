@@ -58,6 +58,8 @@ def provenance(outcome: TuningResult) -> dict[str, Any]:
     # An unfinished tuning was not judged.
     if outcome.margins:
         facts |= {"margins_hold": outcome.steady, "margin": _margins(outcome.margins)}
+    if outcome.worse:
+        facts["follows_worse"] = [one.words for one in outcome.worse]
     if outcome.held_out:
         facts["expected"] = [_expected(one) for one in outcome.held_out]
     return facts
@@ -78,7 +80,7 @@ def _header(outcome: TuningResult) -> list[str]:
     if outcome.model.travel is not None:
         lines.append(f"For the board: {outcome.model.travel.sentence}")
     lines += [f"Expected on {one.name}, all joints: {_change(one)}." for one in outcome.held_out]
-    lines += [*overshooting(outcome), *failing_margins(outcome)]
+    lines += [*outcome.worse_sentences, *overshooting(outcome), *failing_margins(outcome)]
     return [*lines, *(f"Doubt: {doubt}" for doubt in outcome.model.doubts)]
 
 

@@ -33,6 +33,8 @@ def tell(outcome: TuningResult) -> list[Part]:
     if outcome.held_out:
         parts.append(Sentences(["Expected on motions that were not trained on, before -> after:"]))
     parts += [table for one in outcome.held_out for table in _motion(one)]
+    if worse := outcome.worse_sentences:
+        parts.append(Sentences(worse, grave=True))
     if more := overshooting(outcome):
         parts.append(Sentences(more, grave=True))
     if outcome.margins:

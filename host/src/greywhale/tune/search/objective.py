@@ -86,7 +86,14 @@ class Objective:
 
     def costs(self, controllers: Controllers, exact: bool = False) -> Floats:
         """(n, 4), over all plants; without the price of unrest. `exact`: in the bench's own arithmetic."""
-        found = follow(self.drills, self.plants, controllers, exact=exact, threads=self.threads, limits=self.limits)
+        return self.costs_of(self.follow(controllers, exact))
+
+    def follow(self, controllers: Controllers, exact: bool = False) -> FollowingErrors:
+        """The candidates' errors on all motions and plants."""
+        return follow(self.drills, self.plants, controllers, exact=exact, threads=self.threads, limits=self.limits)
+
+    def costs_of(self, found: FollowingErrors) -> Floats:
+        """The costs (n, 4) of candidates that were simulated."""
         supply = self.drills[0].experiment.table.supply_v
         relative = relative_costs(found, self.scale, supply, self.limits, self.swings)
         return total_costs(relative, [drill.importance for drill in self.drills], self.limits)
