@@ -35,12 +35,13 @@ bool is_finite(const State<double>& s) {
 }  // namespace
 
 Arm::Arm(const ArmParameters& parameters, std::uint64_t seed, double longest_step)
-    : worn_(false), drive_(parameters.drive), noise_(seed, 0), longest_step_(longest_step) {
+    : worn_(false), loses_(false), drive_(parameters.drive), noise_(seed, 0), longest_step_(longest_step) {
   if (!(std::isfinite(longest_step) && longest_step > 0.0))
     refuse("the longest step", longest_step, "it must be a time above 0 s");
   plant_.body = rigid_body(parameters);
   for (std::size_t i = 0; i < kJoints; ++i) plant_.joints[i] = parameters.joints[i];
   worn_ = is_worn(plant_);
+  loses_ = has_losses(plant_.joints);
   double start[kJoints];
   for (std::size_t i = 0; i < kJoints; ++i) {
     const Stops<double>& stops = plant_.joints[i].stops;
@@ -84,6 +85,7 @@ void Arm::step(const double (&volts)[kJoints], double dt) {
     double arriving[kJoints];
     for (std::size_t i = 0; i < kJoints; ++i) arriving[i] = applied[i];
     if (drive_.supply.resistance > 0.0) sag(plant_.joints, drive_.supply, next, arriving);
+    if (loses_) lose(plant_.joints, arriving);
     unsettled += advance(plant_, next, arriving, load_, h, worn_) ? 0u : 1u;
   }
   if (!is_finite(next)) throw std::runtime_error("the arm's motion left the range of numbers; check its parameters.");

@@ -37,7 +37,7 @@ class Arm {
 
  private:
   Plant<double> plant_{};
-  bool worn_;
+  bool worn_, loses_;
   Drive drive_;
   Noise noise_;
   double longest_step_;

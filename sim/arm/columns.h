@@ -57,6 +57,8 @@ constexpr Column kJointColumns[] = {
     {"stop_max", offsetof(detail::Shaft, stops.max)},
     {"pot_play", offsetof(detail::Shaft, sensor.play)},
     {"pot_lag", offsetof(detail::Shaft, sensor.lag)},
+    {"lost_up", offsetof(detail::Shaft, driver.lost_up)},
+    {"lost_down", offsetof(detail::Shaft, driver.lost_down)},
 };
 static_assert(detail::is_all_of<detail::Shaft>(kJointColumns), "Joint and the names of its columns differ");
 

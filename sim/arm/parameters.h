@@ -69,6 +69,13 @@ struct Sensor {
   T lag;   // s, time constant of the low-pass between wiper and converter
 };
 
+// What a motor's driver keeps for itself of a voltage, as bridges do whose sides are never on together. A smaller
+// voltage does nothing.
+template <class T>
+struct Driver {
+  T lost_up, lost_down;  // V, of voltages above and below 0
+};
+
 template <class T>
 struct Joint {
   Actuator<T> actuator;
@@ -76,6 +83,7 @@ struct Joint {
   Gear<T> gear;
   Stops<T> stops;
   Sensor<T> sensor;
+  Driver<T> driver;
 };
 
 // What feeds all motor drivers.

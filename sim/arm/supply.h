@@ -1,4 +1,5 @@
-// The voltage that is left of a supply with resistance while its motors draw current.
+// What arrives of a voltage at its motor: what is left of a supply with resistance while the motors draw current, less
+// what the driver keeps.
 #pragma once
 
 #include "conditions.h"
@@ -32,6 +33,25 @@ void sag(const Joint<T> (&joints)[kJoints], const Supply<T>& supply, const State
   for (std::size_t i = 0; i < kJoints; ++i) duty[i] = volts[i] / supply.volts;
   const T share = voltage_share(joints, supply, s.motor_v, duty);
   for (T& one : volts) one = one * share;
+}
+
+// The voltages that drivers pass on.
+template <class T>
+void lose(const Joint<T> (&joints)[kJoints], T (&volts)[kJoints]) {
+  const T zero = constant<T>(0.0);
+  for (std::size_t i = 0; i < kJoints; ++i) {
+    const T up = volts[i] - joints[i].driver.lost_up, down = volts[i] + joints[i].driver.lost_down;
+    volts[i] = choose(up > zero, up, choose(down < zero, down, zero));
+  }
+}
+
+template <class T>
+bool has_losses(const Joint<T> (&joints)[kJoints]) {
+  bool found = false;
+  for (const Joint<T>& joint : joints) {
+    found = found || any(joint.driver.lost_up > constant<T>(0.0)) || any(joint.driver.lost_down > constant<T>(0.0));
+  }
+  return found;
 }
 
 }  // namespace greywhale::arm

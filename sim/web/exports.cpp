@@ -60,6 +60,7 @@ class Reader {
       joint.gear = {next(), next(), next(), next()};
       joint.stops = {next(), next()};
       joint.sensor = sensor();
+      joint.driver = {next(), next()};
     }
     arm.drive = {{next(), next()}, static_cast<int>(next())};
     return arm;

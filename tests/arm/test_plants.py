@@ -46,6 +46,8 @@ def test_columns_hold_what_they_are_called(name: str) -> None:
             "stop_max": joint.stops.max,
             "pot_play": arm.follower_pots.joint[index].play,
             "pot_lag": arm.follower_pots.joint[index].lag,
+            "lost_up": joint.driver.lost_up,
+            "lost_down": joint.driver.lost_down,
         }
         found = {column.split(".")[1]: columns[column] for column in columns if column.startswith(f"joint{index}.")}
         assert found == expected

@@ -121,6 +121,19 @@ def test_braking_motor_feeds_the_others(make_arm: Any, rigid: Any) -> None:
     assert pushed.velocities[ROLL] > 1.001 * still.velocities[ROLL]
 
 
+def test_a_driver_keeps_its_volts_by_the_direction_of_the_voltage(make_arm: Any, rigid: Any) -> None:
+    """A smaller voltage does nothing; a larger one moves as what is left of it moves an arm that loses none."""
+    friction, losses = {"coulomb": 0.0, "breakaway": 0.0}, {"lost_up": 0.4, "lost_down": 0.1}
+    sound = roll_arm(make_arm, friction, rigid["gear"])
+    joint = {"motor": MOTOR, "friction": friction, "gear": rigid["gear"], "driver": losses}
+    lossy = make_arm(gravity=0.0, joint_3=joint)
+    for asked, acting in ((0.39, 0.0), (-0.09, 0.0), (1.0, 0.6), (-1.0, -0.9)):
+        one, other = Arm(lossy), Arm(sound)
+        one.step([0.0, 0.0, 0.0, asked], 0.1)
+        other.step([0.0, 0.0, 0.0, acting], 0.1)
+        assert one.angles[ROLL] == pytest.approx(other.angles[ROLL], abs=1e-15)
+
+
 def pots(**values: float) -> Potentiometers:
     return Potentiometers(PotentiometerBank(joint=(Potentiometer(**values),) * 4))  # type: ignore[arg-type]
 

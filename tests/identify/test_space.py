@@ -12,6 +12,7 @@ from greywhale.files.model import to_toml
 from greywhale.identify.space import KINDS, MOTOR, WHOLE_ARM, Space
 from greywhale.loop import plant_row
 from greywhale.protocol.firmware import JOINTS
+from tests.support.arms import make_arm
 
 ALL = tuple(KINDS)
 BODY = set(range(column("torque_per_volt", 0)))  # what depends on the links alone
@@ -19,7 +20,7 @@ BODY = set(range(column("torque_per_volt", 0)))  # what depends on the links alo
 
 @pytest.mark.parametrize(("name", "kinds"), [("white_box", MOTOR), ("worn", ALL)])
 def test_motors_friction_and_gears_start_as_the_users_arm(name: str, kinds: tuple[str, ...]) -> None:
-    arm = load_arm(name)
+    arm = make_arm(name, every_joint={"driver": {"lost_up": 0.4, "lost_down": 0.1}})
     space = Space.of(arm, kinds, range(JOINTS))
     np.testing.assert_allclose(space.plants(space.start()[None])[0], plant_row(arm), rtol=1e-12)
 
@@ -37,7 +38,7 @@ def test_each_number_moves_its_own_joint_only() -> None:
             assert set(changed) <= (BODY if parameter.kind == "tip" else {column("supply_resistance")})
             continue
         first = column("torque_per_volt", parameter.joint)
-        assert np.all((changed >= first) & (changed <= column("pot_lag", parameter.joint)))
+        assert np.all((changed >= first) & (changed <= column("lost_down", parameter.joint)))
         assert bool(len(changed)) is (parameter.kind != "offset")
 
 

@@ -67,6 +67,7 @@ WEAR: dict[str, dict[str, float]] = {
     "play": {"pot_play": 0.01},
     "lag": {"pot_lag": 0.002},
     "supply": {"supply_resistance": 0.6},
+    "drivers": {"lost_up": 0.5, "lost_down": 0.2},
 }
 WEAR["rigid, all"] = RIGID | {key: value for one in WEAR.values() for key, value in one.items()}
 
@@ -96,11 +97,13 @@ def test_sound_plants_keep_every_bit_beside_worn_ones(experiment: Experiment) ->
     plants[1::2, columns("load_friction")] = 0.3
     plants[1::2, columns("creep_velocity")] = 0.01
     plants[1::2, columns("pot_play")] = 0.01
+    plants[1::2, columns("lost_up")] = 0.3
     plants[1::2, column("supply_resistance")] = 0.3
     beside = experiment.run(None, plants, every=5)
     assert (beside.duties[1] != alone.duties[1]).any()
     np.testing.assert_array_equal(beside.angles[::2], alone.angles[::2])
     np.testing.assert_array_equal(beside.duties[::2], alone.duties[::2])
+    np.testing.assert_array_equal(beside.mse[::2], alone.mse[::2])
 
 
 @pytest.mark.slow

@@ -99,6 +99,8 @@ def has(arm: ArmParameters, parameter: Parameter) -> bool:
         "lag": pot.lag,
         "load": joint.friction.load,
         "creep": joint.friction.creep_velocity,
+        "lost": joint.driver.lost_up + joint.driver.lost_down,
+        "uneven": abs(joint.driver.lost_up - joint.driver.lost_down),
     }
     return wear.get(parameter.kind, 1.0) > 0.0
 

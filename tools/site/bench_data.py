@@ -41,7 +41,7 @@ def arm_numbers(arm: ArmParameters) -> list[float]:
         friction, gear = one.friction, one.gear
         numbers += [friction.coulomb, friction.breakaway, friction.stribeck_velocity, friction.load]
         numbers += [friction.creep_velocity, gear.half_gap, gear.stiffness, gear.damping, gear.drag]
-        numbers += [one.stops.min, one.stops.max, pot.play, pot.lag]
+        numbers += [one.stops.min, one.stops.max, pot.play, pot.lag, one.driver.lost_up, one.driver.lost_down]
     drive = arm.drive
     numbers += [drive.supply, drive.supply_resistance, drive.pwm_levels]
     return numbers + pot_numbers(arm.leader_pots) + pot_numbers(arm.follower_pots)

@@ -121,16 +121,18 @@ void bind_parameters(nb::module_& m) {
           "__init__",
           [](JointOfOne* self, const ActuatorOfOne& actuator, double coulomb, double breakaway,
              double stribeck_velocity, double load_friction, double creep_velocity, double half_gap, double stiffness,
-             double damping, double drag, double min, double max, double pot_play, double pot_lag) {
+             double damping, double drag, double min, double max, double pot_play, double pot_lag, double lost_up,
+             double lost_down) {
             new (self) JointOfOne{actuator,
                                   {coulomb, breakaway, stribeck_velocity, load_friction, creep_velocity},
                                   {half_gap, stiffness, damping, drag},
                                   {min, max},
-                                  {pot_play, pot_lag}};
+                                  {pot_play, pot_lag},
+                                  {lost_up, lost_down}};
           },
           nb::kw_only(), "actuator"_a, "coulomb"_a, "breakaway"_a, "stribeck_velocity"_a, "load_friction"_a = 0.0,
           "creep_velocity"_a = 0.0, "half_gap"_a, "stiffness"_a, "damping"_a, "drag"_a, "min"_a, "max"_a,
-          "pot_play"_a = 0.0, "pot_lag"_a = 0.0);
+          "pot_play"_a = 0.0, "pot_lag"_a = 0.0, "lost_up"_a = 0.0, "lost_down"_a = 0.0);
 
   nb::class_<arm::ArmParameters>(m, "ArmParameters", "The whole arm; greywhale.arm.ArmParameters makes it, validated.")
       .def(

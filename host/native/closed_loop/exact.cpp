@@ -114,6 +114,7 @@ class Run {
         state_(resting(x, row.plant)),
         worn_(arm::is_worn(row.plant)),
         sags_(row.supply.resistance > 0.0),
+        loses_(arm::has_losses(row.plant.joints)),
         waiting_(static_cast<std::size_t>(x.timing.late)) {
     for (std::size_t i = 0; i < kJoints; ++i) fuzzy_pdi::reset(controllers[i], memories_[i]);
     Four millivolts;
@@ -164,6 +165,7 @@ class Run {
         Four arriving;
         std::copy_n(volts, kJoints, arriving);
         if (sags_) arm::sag(row_.plant.joints, row_.supply, state_, arriving);
+        if (loses_) arm::lose(row_.plant.joints, arriving);
         arm::advance(row_.plant, state_, arriving, kNoLoad, kSlice / substeps_, worn_);
       }
     }
@@ -231,7 +233,7 @@ class Run {
   Angles angles_;
   SoftStart ramp_;
   arm::State<double> state_;
-  const bool worn_, sags_;
+  const bool worn_, sags_, loses_;
   fuzzy_pdi::State memories_[kJoints];
   std::array<std::int32_t, kJoints> commanded_ = {}, compare_ = {};
   std::vector<std::array<std::int32_t, kJoints>> waiting_;  // commanded, not acting yet

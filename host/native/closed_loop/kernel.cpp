@@ -32,6 +32,7 @@ class Run {
     plant_.body = body_of(block);
     sensors_ = sensors_of(block, pots_);
     sag_ = sag_of(block, x.settings.pwm_top);
+    losses_ = losses_of(block, x.settings.pwm_top);
     worn_ = is_worn(block);
     plant_.step = all(static_cast<float>(h));
     plant_.travel = all(static_cast<float>(h) * kRadian);
@@ -182,6 +183,7 @@ class Run {
   GREYWHALE_INLINE void arrive(Float (&duty)[kJoints]) const {
     for (std::size_t i = 0; i < kJoints; ++i) duty[i] = duty_[i];
     if (__builtin_expect(sag_.on, 0)) sag(sag_, state_, duty_, duty);
+    if (__builtin_expect(losses_.on, 0)) lose(losses_, duty);
   }
 
   // The joints' places become those that the converter sees.
@@ -274,6 +276,7 @@ class Run {
   Plant plant_;
   Sensors sensors_;
   Sag sag_;
+  Losses losses_;
   Law laws_[kJoints];
   Memory memories_[kJoints];
   State state_[kJoints];

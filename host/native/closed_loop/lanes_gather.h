@@ -5,6 +5,7 @@
 
 #include "arm/sensor.h"
 #include "arm/step.h"
+#include "arm/supply.h"
 #include "block.h"
 #include "lanes_controller.h"
 #include "lanes_plant.h"
@@ -129,6 +130,20 @@ inline Sag sag_of(const Block& block, const int (&top)[kJoints]) {
   }
   for (const PlantRow* row : block.plants) sag.on = sag.on || row->supply.resistance > 0.0;
   return sag;
+}
+
+inline Losses losses_of(const Block& block, const int (&top)[kJoints]) {
+  Losses losses{};
+  for (std::size_t i = 0; i < kJoints; ++i) {
+    const auto steps = [&](double arm::Driver<double>::* side) {
+      return gather(block,
+                    [&](const PlantRow& row) { return row.plant.joints[i].driver.*side / row.supply.volts * top[i]; });
+    };
+    losses.up[i] = steps(&arm::Driver<double>::lost_up);
+    losses.down[i] = steps(&arm::Driver<double>::lost_down);
+  }
+  for (const PlantRow* row : block.plants) losses.on = losses.on || arm::has_losses(row->plant.joints);
+  return losses;
 }
 
 inline bool is_worn(const Block& block) {

@@ -1,5 +1,5 @@
-// What stands between the arm and its board, in lanes: potentiometers with play and lag (sim/arm/sensor.h) and a supply
-// that sags (sim/arm/supply.h).
+// What stands between the arm and its board, in lanes: potentiometers with play and lag (sim/arm/sensor.h), a supply
+// that sags and drivers that keep a part of their voltage (sim/arm/supply.h).
 #pragma once
 
 #include <cstddef>
@@ -41,6 +41,19 @@ GREYWHALE_INLINE void sag(const Sag& sag, const State (&s)[kJoints], const Float
   }
   const Float left = greatest((all(1.0f) + fed) / (all(1.0f) + load), all(0.0f));
   for (std::size_t i = 0; i < kJoints; ++i) arriving[i] = duty[i] * left;
+}
+
+struct Losses {
+  bool on;
+  Float up[kJoints], down[kJoints];  // compare steps
+};
+
+// The duties that drivers pass on.
+GREYWHALE_INLINE void lose(const Losses& losses, Float (&arriving)[kJoints]) {
+  for (std::size_t i = 0; i < kJoints; ++i) {
+    arriving[i] =
+        greatest(arriving[i] - losses.up[i], all(0.0f)) + least(arriving[i] + losses.down[i], all(0.0f));
+  }
 }
 
 }  // namespace greywhale::loop::GREYWHALE_INSTRUCTIONS

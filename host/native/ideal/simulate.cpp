@@ -45,6 +45,11 @@ void simulate_one(const Experiment& x, const Tuning* tuning, double* mse, double
       arrived = direction != 0 && (arrived || direction * (s.q[x.chase.joint] - x.chase.until[n]) >= 0.0);
       if (direction != 0 && !arrived) volts[x.chase.joint] = direction * x.supply;
     }
+    // The law asks for what is to arrive, so its driver gets more: only the most that can arrive is less.
+    for (std::size_t i = 0; i < kJoints; ++i) {
+      const arm::Driver<double>& driver = row.plant.joints[i].driver;
+      volts[i] = std::clamp(volts[i], driver.lost_down - x.supply, x.supply - driver.lost_up);
+    }
     if (sags) arm::sag(row.plant.joints, row.supply, s, volts);
     arm::advance(row.plant, s, volts, kNoLoad, kSlice, worn);
   }

@@ -16,6 +16,7 @@ arm::Joint<double> joint_of(Reader& reader, bool paper) {
   joint.gear = {reader.next(), reader.next(), reader.next(), reader.next()};
   joint.stops = {reader.next(), reader.next()};
   joint.sensor = {reader.next(), reader.next()};
+  joint.driver = {reader.next(), reader.next()};
   return joint;
 }
 
@@ -25,7 +26,7 @@ extern "C" {
 
 // Given: 1 for the paper's equation of a motor, 0 for the physical one; of each link mass, length, centre and three
 // inertias; the load, gravity; of each joint five numbers of the motor, five of friction, four of the gear, two stops,
-// play and lag of its potentiometer; supply and its resistance. Found: the row of the plant.
+// play and lag of its potentiometer, two losses of its driver; supply and its resistance. Found: the row of the plant.
 EXPORT(plant) void exported_plant() {
   Reader reader;
   arm::ArmParameters arm{};

@@ -30,6 +30,7 @@ class Run {
     for (std::size_t n = 0; n < kLanes; ++n) begin(n);
     worn_ = arm::is_worn(row_.plant);
     sags_ = any(row_.supply.resistance > Lanes(0.0));
+    loses_ = arm::has_losses(row_.plant.joints);
     for (const arm::Joint<Lanes>& joint : row_.plant.joints)
       plays_ = plays_ || any(joint.sensor.play > Lanes(0.0)) || any(joint.sensor.lag > Lanes(0.0));
   }
@@ -47,6 +48,7 @@ class Run {
         Lanes volts[kJoints];
         read_volts(row * w_.substeps + step, volts);
         if (sags_) arm::sag(row_.plant.joints, row_.supply, s_, volts);
+        if (loses_) arm::lose(row_.plant.joints, volts);
         arm::advance(row_.plant, s_, volts, no_load, dt, worn_);
         if (plays_) look(dt);
       }
@@ -111,7 +113,7 @@ class Run {
   arm::Shown<Lanes> shown_[kJoints];
   Lanes offset_[kJoints];
   std::size_t first_[kLanes] = {};
-  bool worn_ = false, sags_ = false, plays_ = false;
+  bool worn_ = false, sags_ = false, loses_ = false, plays_ = false;
 };
 
 void simulate(const Windows& w, const Task* tasks, std::size_t count) { Run(w, tasks, count).through(); }

@@ -162,6 +162,7 @@ def _left_out(parameters: ArmParameters, *more: str) -> str:
         "friction that grows with the load": any(one.friction.load for one in joints),
         "creep": any(one.friction.creep_velocity for one in joints),
         "the gears' gaps and teeth": any(one.gear.stiffness for one in joints),
+        "volts that drivers lose": any(one.driver.lost_up or one.driver.lost_down for one in joints),
         "the supply's resistance": bool(parameters.drive.supply_resistance),
         "potentiometers": any(one.noise or one.play or one.lag or one.linearity for one in pots),
     }

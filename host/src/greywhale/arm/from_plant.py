@@ -1,6 +1,4 @@
-"""Turns an identified plant back into an arm file's terms: motors, friction, gears, and where the potentiometers read
-0.
-"""
+"""Turns an identified plant back into an arm file's terms: motors, friction, gears, drivers, and zero angles."""
 
 from __future__ import annotations
 
@@ -22,7 +20,7 @@ _GEAR = {"half_gap": "half_gap", "stiffness": "stiffness", "damping": "mesh_damp
 def arm_of(
     arm: ArmParameters, plant: Floats, zero: Floats, name: str, source: str, noise: Floats | None = None
 ) -> ArmParameters:
-    """An identified plant as an arm: the user's file with other motors, friction, gears and zero angles.
+    """An identified plant as an arm: the user's file with other motors, friction, gears, drivers and zero angles.
 
     `noise` (4,) is that of the follower's potentiometers, V rms, if they turn 300 degrees. The leader's are assumed to
     be of the same make and no better: the log of a led arm shows nothing of them.
@@ -37,6 +35,7 @@ def arm_of(
         one["friction"] = {key: _cell(plant, joint, name) for key, name in _FRICTION.items()}
         one["friction"]["breakaway"] = max(one["friction"]["breakaway"], one["friction"]["coulomb"])
         one["gear"] = {key: _cell(plant, joint, name) for key, name in _GEAR.items()}
+        one["driver"] = {key: _cell(plant, joint, key) for key in ("lost_up", "lost_down")}
         pot = data["follower_pots"]["joint"][joint]
         pot["play"], pot["lag"] = _cell(plant, joint, "pot_play"), _cell(plant, joint, "pot_lag")
         pot["centre"] = float(pot["centre"] + zero[joint])
@@ -60,7 +59,7 @@ def known_before(arm: ArmParameters) -> dict[str, Any]:
                 del pot[name]
         if not joint.get("fixed"):
             joint["motor"] = {"gear_ratio": joint["motor"]["gear_ratio"]}
-            del joint["friction"], joint["gear"], joint["name"]
+            del joint["friction"], joint["gear"], joint["driver"], joint["name"]
     del data["drive"]["resistance"], data["drive"]["supply_resistance"]
     return data
 

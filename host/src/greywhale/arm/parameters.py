@@ -129,6 +129,13 @@ class Gear(Table):
         return self
 
 
+class Driver(Table):
+    """The bridge that drives a motor: what it keeps for itself of a voltage, of which less does nothing."""
+
+    lost_up: Annotated[float, Field(ge=0, le=10)] = 0.0  # V, of voltages above 0
+    lost_down: Annotated[float, Field(ge=0, le=10)] = 0.0  # V, of voltages below 0
+
+
 class Stops(Table):
     """Mechanical end stops of the joint."""
 
@@ -159,6 +166,7 @@ class Joint(Table):
     friction: Friction = Friction()
     gear: Gear = Gear()
     stops: Stops
+    driver: Driver = Driver()
 
     @model_validator(mode="before")
     @classmethod
@@ -262,7 +270,7 @@ class ArmParameters(Table):
             return _native.Joint(actuator=self.actuator(index), **rigid)
         friction = dict(joint.friction)
         friction["load_friction"] = friction.pop("load")
-        parts = friction | dict(joint.gear) | dict(joint.stops)
+        parts = friction | dict(joint.gear) | dict(joint.stops) | dict(joint.driver)
         return _native.Joint(actuator=self.actuator(index), pot_play=pot.play, pot_lag=pot.lag, **parts)
 
 

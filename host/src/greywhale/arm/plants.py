@@ -31,7 +31,7 @@ _POSITIVE = (
 )
 _NOT_NEGATIVE = (
     *("coulomb", "damping", "load_friction", "creep_velocity", "half_gap", "stiffness", "mesh_damping", "drag"),
-    *("pot_play", "pot_lag", "supply_resistance"),
+    *("pot_play", "pot_lag", "lost_up", "lost_down", "supply_resistance"),
 )
 
 

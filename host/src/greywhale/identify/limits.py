@@ -135,6 +135,8 @@ class UncertaintyLimits:
             ("load", 0.2),
             ("creep", 0.05),
             ("lag", 1e-3),
+            ("lost", 0.2),
+            ("uneven", 0.1),
             ("sag", 0.3),
             ("tip", 0.05),
             ("offset", 0.05),

@@ -42,12 +42,13 @@ ORDERS: dict[str, tuple[str, ...]] = {
     "lag of the potentiometers": ("lag",),
     "sagging supply": ("sag",),
     "zero angles": ("offset",),
+    "drivers that lose volts": ("lost", "uneven"),
 }
 # What is tried after motors and Coulomb friction, one line after the other. Orders of one line explain much the same,
 # so they compete; the losers are tried again on top of the winner. An order that did not help may do so later.
 TURNS: tuple[tuple[str, ...], ...] = (
     ("Stribeck friction",),
-    ("backlash", "play at the potentiometers"),
+    ("backlash", "play at the potentiometers", "drivers that lose volts"),
     ("Stribeck friction", "load friction", "creep"),
     ("zero angles",),
     ("lag of the potentiometers", "sagging supply"),

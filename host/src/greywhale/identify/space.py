@@ -61,6 +61,8 @@ KINDS = {
     "load": Kind("", "friction that the torque passed on adds, a share of it", False, 0.1, 0.0, 0.5, 1e-2, 0.5),
     "creep": Kind("rad/s", "speed at which a joint gives way just below breakaway", False, 5e-3, 0.0, 0.3, 1e-3, 0.05),
     "lag": Kind("s", "time constant of the low-pass behind the potentiometer", False, 5e-4, 0.0, 2e-2, 1e-4, 2e-3),
+    "lost": Kind("V", "voltage that the driver keeps, the mean of both directions", False, 0.1, 0.0, 4.0, 1e-2, 0.3),
+    "uneven": Kind("V", "half of what it keeps more when it drives up than down", False, 0.0, -1.0, 1.0, 1e-2, 0.3),
     "sag": Kind("ohm", "resistance of supply and cables, shared by all motors", False, 0.1, 0.0, 5.0, 1e-2, 0.5),
     "tip": Kind("kg", "load at the tip", False, 0.0, -0.01, 2.0, 1e-3, 0.2),
     "offset": Kind("rad", "angle at which the potentiometer reads 0", False, 0.0, -0.3, 0.3, 1e-3, 0.1),
@@ -231,6 +233,8 @@ class Space:
             "load": joint.friction.load or usual,
             "creep": joint.friction.creep_velocity or usual,
             "lag": pot.lag or usual,
+            "lost": 0.5 * (joint.driver.lost_up + joint.driver.lost_down) or usual,
+            "uneven": 0.5 * (joint.driver.lost_up - joint.driver.lost_down),
             "offset": 0.0,
         }
         return known[parameter.kind]
@@ -268,6 +272,10 @@ def _set_joint(rows: Floats, joint: int, here: dict[str, Floats], supply: float)
     for kind, name in _AS_THEY_ARE.items():
         if kind in here:
             rows[:, column(name, joint)] = here[kind]
+    if "lost" in here:
+        lost, more = here["lost"], here["uneven"]
+        rows[:, column("lost_up", joint)] = np.maximum(lost + more, 0.0)
+        rows[:, column("lost_down", joint)] = np.maximum(lost - more, 0.0)
     if "gap" in here or "teeth" in here:
         stiffness, mesh = rows[:, column("stiffness", joint)], rows[:, column("mesh_damping", joint)]
         lasting = np.where(stiffness > 0.0, mesh / np.where(stiffness > 0.0, stiffness, 1.0), TEETH_S)

@@ -35,6 +35,8 @@ EXCITATION = {
     "load": "move a heavy pose slowly up and down",
     "creep": "rest in poses that the motor must hold",
     "lag": "reverse the motion quickly, several times a second",
+    "lost": "brake quickly, and reverse slowly in poses without load",
+    "uneven": "reverse slowly in poses in which the motor must push up, and in others in which it must push down",
     "sag": "move several joints at full voltage at once",
     "tip": "move the pitch joints through a wide range of poses",
     "offset": "turn the joint through a wide range of poses, so that gravity changes sign",

@@ -12,7 +12,10 @@ from greywhale.tune.limits import TUNING_LIMITS, ModelLimits
 from greywhale.tune.model_checks import Doubt, Identification, with_one_uncertain
 
 # Quantities that the search may leave at next to nothing.
-OFTEN_NOTHING = ("half_gap", "pot_play", "pot_lag", "load_friction", "creep_velocity", "supply_resistance")
+OFTEN_NOTHING = (
+    *("half_gap", "pot_play", "pot_lag", "load_friction", "creep_velocity"),
+    *("lost_up", "lost_down", "supply_resistance"),
+)
 REMEDY = "identify again, also after a change of the arm or its load"
 UNSEALED = (
     "An older greywhale made this model: whether its links and potentiometers were edited since cannot be seen; "

@@ -97,6 +97,7 @@ def travel_of(
     plants = sampled_plants(arm, samples, SEED)
     used = ~rigid_joints(plants[0])
     friction, gravity = _each(plants, "breakaway") / _torque_per_volt(plants), _gravity_volts(plants)
+    friction = friction + np.maximum(_each(plants, "lost_up"), _each(plants, "lost_down"))
     spread = friction + np.abs(gravity - gravity[0])
     deviation = np.sqrt(np.sum((spread - spread[0]) ** 2, axis=0) / max(samples - 1, 1))
     wanted = friction[0] + np.maximum(limits.least_margin * friction[0], limits.sigmas * deviation)

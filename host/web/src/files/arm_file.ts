@@ -21,6 +21,7 @@ type Whole = {
     readonly friction: Numbers<"coulomb" | "breakaway" | "stribeck_velocity" | "load" | "creep_velocity">;
     readonly gear: Numbers<"half_gap" | "stiffness" | "damping" | "drag">;
     readonly stops: Numbers<"min" | "max">;
+    readonly driver: Numbers<"lost_up" | "lost_down">;
   }[];
   readonly drive: Numbers<"supply" | "supply_resistance" | "resistance">;
   readonly leader_pots: Pots;
@@ -65,12 +66,13 @@ function armNumbers({ motor_equation, link, tip, gravity, joint, drive, follower
     Number(motor_equation === "paper"),
     ...link.flatMap(({ mass, length, centre, inertia: { xx, yy, zz } }) => [mass, length, centre, xx, yy, zz]),
     tip.mass, gravity,
-    ...joint.flatMap(({ motor, friction, gear, stops }, number) => {
+    ...joint.flatMap(({ motor, friction, gear, stops, driver }, number) => {
       const { play, lag } = follower_pots.joint[number]!;
       return [
         motor.inertia, motor.resistance + drive.resistance, motor.torque_constant, motor.viscous, motor.gear_ratio,
         friction.coulomb, friction.breakaway, friction.stribeck_velocity, friction.load, friction.creep_velocity,
         gear.half_gap, gear.stiffness, gear.damping, gear.drag, stops.min, stops.max, play, lag,
+        driver.lost_up, driver.lost_down,
       ];
     }),
     drive.supply, drive.supply_resistance,

@@ -157,6 +157,13 @@ export const ARM: Schema = {
               "max": {"type": "number", "minimum": -6.283185307179586, "maximum": 6.283185307179586},
             },
           },
+          "driver": {
+            "type": "object",
+            "properties": {
+              "lost_up": {"type": "number", "minimum": 0, "maximum": 10, "default": 0.0},
+              "lost_down": {"type": "number", "minimum": 0, "maximum": 10, "default": 0.0},
+            },
+          },
         },
       },
       "minItems": 4,
