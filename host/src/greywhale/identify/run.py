@@ -11,6 +11,7 @@ from greywhale.files.log import Log
 from greywhale.files.log.check import Check
 from greywhale.files.log.reader import refuse_altered
 from greywhale.identify import checks, controllers, judge
+from greywhale.identify.bounds import doubt_bounds
 from greywhale.identify.data import prepare
 from greywhale.identify.default import find_default
 from greywhale.identify.found_model import FoundModel
@@ -98,7 +99,7 @@ def _judged(
         found=found,
         verdicts=verdicts,
         warnings=(*remarks, *judge.warnings_of(verdicts), *judge.undecided_of(verdicts)),
-        doubts=judge.doubts_of(verdicts, found.joints),
+        doubts=(*doubt_bounds(found.estimates), *judge.doubts_of(verdicts, found.joints)),
         subjects=tuple(subjects),
     )
 

@@ -102,7 +102,8 @@ def _combine(information: Floats, scatter: Floats, nominal: Floats) -> Floats:
     return (covariance + covariance.T) / 2.0
 
 
-def _whose(parameter: Parameter) -> str:
+def whose(parameter: Parameter) -> str:
+    """The joint's number and name, or the arm."""
     if parameter.joint == WHOLE_ARM:
         return "the arm"
     return f"joint {parameter.joint} ({JOINT_NAMES[parameter.joint]})"
@@ -135,6 +136,6 @@ def _describe_open(
             else f"{x[index]:.2g} +- {deviations[index]:.2g} {kind.unit}".rstrip()
         )
         sentences.append(
-            f"{_whose(parameter)}: {parameter.kind}, the {kind.means}, is {known}; {EXCITATION[parameter.kind]}"
+            f"{whose(parameter)}: {parameter.kind}, the {kind.means}, is {known}; {EXCITATION[parameter.kind]}"
         )
     return sentences
