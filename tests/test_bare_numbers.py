@@ -61,9 +61,9 @@ ALLOWED = {
     "identify/space.py": {
         "COUPLED": "the joints' numbers",
         "PITCH": "the joints' numbers",
-        "TEETH_S": "where a search starts",
     },
     "identify/steps.py": dict.fromkeys(("DAMPINGS", "LARGEST_STEP", "MOST_DAMPING", "ENOUGH"), FINE),
+    "identify/soft_teeth.py": {"SWINGS_HZ": FINE},
     "identify/uncertainty.py": {"LARGEST_CONDITION": ROUNDING},
     "identify/windows.py": {"SIDES": FINE, "START_PASSES": FINE},
     "tune/default.py": {

@@ -10,6 +10,8 @@ import pytest
 
 from greywhale import _native
 from greywhale.arm import Arm, ArmParameters
+from greywhale.arm.body import Body
+from greywhale.arm.plants import columns
 from greywhale.files.arm import default_arm
 from greywhale.identify.data import first_rows, prepare, some_windows, windows_of
 from greywhale.identify.limits import IDENTIFICATION_LIMITS
@@ -66,6 +68,28 @@ def test_velocities_offsets_and_sides_move_the_start() -> None:
     np.testing.assert_allclose(shifted[..., [0, 3]], plain[..., [0, 3]], atol=1e-9)
     sides = np.asarray(_native.simulate_windows(**(given | {"sides": np.ones((3, 4))})))
     assert np.all(np.max(np.abs(sides - plain), axis=(0, 1, 2)) > 1e-4)
+
+
+def test_the_log_leads_motors_to_where_their_teeth_bend(hidden: ArmParameters) -> None:
+    """Motors hold the links against gravity; one that begins a window without the bend lets its link sink first."""
+    plant = plant_row(hidden)
+    plant[columns("half_gap")], plant[columns("stiffness")], plant[columns("mesh_damping")] = 0.0, 30.0, 0.3
+    plant[columns("coulomb")] = plant[columns("breakaway")] = 0.0
+    given, pose = arguments(hidden, 1), np.array([0.0, 0.3, 0.2, 0.0])
+    still = np.zeros((len(given["spacing"]), 4))
+    gravity = Body.of(plant).bias(pose[None], still[:1])[0]
+    held = given | {
+        "plants": plant[None],
+        "angles": np.tile(pose, (3, 1)),
+        "volts": np.tile(gravity / plant[columns("torque_per_volt")], (len(still) * SUBSTEPS, 1)),
+        "log_angles": still + pose,
+        "log_velocities": still,
+        "log_places": still,
+    }
+    found = np.asarray(_native.simulate_windows(**held, led=np.array([0, 0, 100], dtype=np.int64)))[0]
+    sunk = np.abs(found - pose).max(axis=1)
+    assert np.all(sunk[2, 1:3] < 0.2 * sunk[1, 1:3])
+    assert np.all(sunk[1, 1:3] > 1e-3)
 
 
 def test_windows_cover_the_log_without_gaps(recorded: Recorded) -> None:

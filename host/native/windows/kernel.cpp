@@ -1,5 +1,6 @@
 // The plant in lanes; every lane has the bits of the plant in plain doubles. core.cmake compiles it once for each
 // instruction set.
+#include <algorithm>
 #include <cstddef>
 
 #include "arm/sensor.h"
@@ -27,29 +28,31 @@ static_assert(sizeof(Row) == kColumns * sizeof(Lanes));
 class Run {
  public:
   Run(const Windows& w, const Task* tasks, std::size_t count) : w_(w), tasks_(tasks), count_(count) {
-    for (std::size_t n = 0; n < kLanes; ++n) begin(n);
+    for (std::size_t n = 0; n < kLanes; ++n) load(n);
     worn_ = arm::is_worn(row_.plant);
     sags_ = any(row_.supply.resistance > Lanes(0.0));
     loses_ = arm::has_losses(row_.plant.joints);
-    for (const arm::Joint<Lanes>& joint : row_.plant.joints)
+    bool toothed = false;
+    for (const arm::Joint<Lanes>& joint : row_.plant.joints) {
       plays_ = plays_ || any(joint.sensor.play > Lanes(0.0)) || any(joint.sensor.lag > Lanes(0.0));
+      toothed = toothed || any(joint.gear.stiffness > Lanes(0.0));
+    }
+    if (toothed) lead();
+    for (std::size_t n = 0; n < kLanes; ++n) begin(n);
   }
 
   void through() {
-    const Lanes no_load[kJoints] = {};
     std::size_t kept = 0;
     for (std::size_t row = 0; row < w_.rows; ++row) {
       if (row % w_.every == 0) {
         keep(kept);
         kept += kJoints;
       }
-      const Lanes dt = step_of(row);
+      std::size_t at[kLanes];
+      for (std::size_t n = 0; n < kLanes; ++n) at[n] = first_[n] + row;
+      const Lanes dt = step_of(at);
       for (std::size_t step = 0; step < w_.substeps; ++step) {
-        Lanes volts[kJoints];
-        read_volts(row * w_.substeps + step, volts);
-        if (sags_) arm::sag(row_.plant.joints, row_.supply, s_, volts);
-        if (loses_) arm::lose(row_.plant.joints, volts);
-        arm::advance(row_.plant, s_, volts, no_load, dt, worn_);
+        drive(row_.plant, at, step, dt);
         if (plays_) look(dt);
       }
     }
@@ -59,34 +62,104 @@ class Run {
   // Lanes without a task repeat the last one's.
   const Task& task(std::size_t n) const { return tasks_[n < count_ ? n : count_ - 1]; }
 
-  void begin(std::size_t n) {
+  void load(std::size_t n) {
     const Task& one = task(n);
     for (std::size_t c = 0; c < kColumns; ++c) reinterpret_cast<Lanes*>(&row_)[c].set(n, one.plant[c]);
     first_[n] = static_cast<std::size_t>(w_.first[one.window]);
+    led_[n] = w_.led == nullptr ? 0 : static_cast<std::size_t>(w_.led[one.window]);
+    for (std::size_t i = 0; i < kJoints; ++i) offset_[i].set(n, one.offset[i]);
+  }
+
+  // Where a link is whose potentiometer shows this.
+  double link_angle(std::size_t n, std::size_t i, double shown, double velocity, double place) const {
+    const arm::Sensor<Lanes>& sensor = row_.plant.joints[i].sensor;
+    return shown + offset_[i][n] + velocity * sensor.lag[n] + place * sensor.play[n];
+  }
+
+  void begin(std::size_t n) {
+    const std::size_t window = task(n).window * kJoints;
     for (std::size_t i = 0; i < kJoints; ++i) {
-      const std::size_t at = one.window * kJoints + i;
-      const arm::Sensor<Lanes>& sensor = row_.plant.joints[i].sensor;
-      const double velocity = w_.velocities[at], shown = w_.angles[at] + one.offset[i];
-      const double wiper = shown + velocity * sensor.lag[n], q = wiper + w_.places[at] * sensor.play[n];
-      offset_[i].set(n, one.offset[i]);
+      const std::size_t at = window + i;
+      const double velocity = w_.velocities[at], shown = w_.angles[at] + offset_[i][n];
+      const double q = link_angle(n, i, w_.angles[at], velocity, w_.places[at]);
       shown_[i].after.set(n, shown);
-      shown_[i].wiper.set(n, wiper);
+      shown_[i].wiper.set(n, shown + velocity * row_.plant.joints[i].sensor.lag[n]);
+      s_.motor_q[i].set(n, q + (s_.motor_q[i][n] - s_.q[i][n]));
+      s_.motor_v[i].set(n, velocity + (s_.motor_v[i][n] - s_.v[i][n]));
       s_.q[i].set(n, q);
       s_.v[i].set(n, velocity);
-      s_.motor_q[i].set(n, q + w_.sides[at] * row_.plant.joints[i].gear.half_gap[n]);
-      s_.motor_v[i].set(n, velocity);
     }
   }
 
-  Lanes step_of(std::size_t row) const {
+  // The motors before a window, while the log leads the links: this tells where in its gap a motor stands when the
+  // window begins, how far its teeth bend, and how fast it is.
+  void lead() {
+    arm::Plant<Lanes> held = row_.plant;
+    hold(held.body);
+    std::size_t rows = 0;
+    for (std::size_t n = 0; n < kLanes; ++n) {
+      rows = std::max(rows, led_[n]);
+      if (led_[n] > 0) follow_log(n, first_[n] - led_[n]);
+      for (std::size_t i = 0; i < kJoints; ++i) {
+        const double side = w_.sides[task(n).window * kJoints + i];
+        s_.motor_q[i].set(n, s_.q[i][n] + side * row_.plant.joints[i].gear.half_gap[n]);
+        s_.motor_v[i].set(n, s_.v[i][n]);
+      }
+    }
+    for (std::size_t left = rows; left > 0; --left) {
+      std::size_t at[kLanes];  // a lane with a shorter way stands where its way begins
+      for (std::size_t n = 0; n < kLanes; ++n) {
+        at[n] = first_[n] - std::min(led_[n], left);
+        follow_log(n, at[n]);
+      }
+      const Lanes dt = step_of(at);
+      for (std::size_t step = 0; step < w_.substeps; ++step) drive(held, at, step, dt);
+    }
+  }
+
+  // Links so heavy that nothing but the log moves them.
+  static void hold(arm::RigidBody<Lanes>& body) {
+    const Lanes heavy(1e6), none(0.0);
+    body = {body.yaw * heavy,
+            body.ixx1 * heavy,
+            body.iyy1 * heavy,
+            body.ixx23 * heavy,
+            body.iyy23 * heavy,
+            body.izz23 * heavy,
+            body.ixx3 * heavy,
+            body.izz1 * heavy,
+            body.coupling * heavy,
+            none,
+            none};
+  }
+
+  void follow_log(std::size_t n, std::size_t row) {
+    for (std::size_t i = 0; i < kJoints; ++i) {
+      const std::size_t at = row * kJoints + i;
+      const double velocity = w_.log_velocities[at];
+      s_.q[i].set(n, link_angle(n, i, w_.log_angles[at], velocity, w_.log_places[at]));
+      s_.v[i].set(n, velocity);
+    }
+  }
+
+  void drive(const arm::Plant<Lanes>& plant, const std::size_t (&rows)[kLanes], std::size_t step, Lanes dt) {
+    const Lanes no_load[kJoints] = {};
+    Lanes volts[kJoints];
+    read_volts(rows, step, volts);
+    if (sags_) arm::sag(plant.joints, row_.supply, s_, volts);
+    if (loses_) arm::lose(plant.joints, volts);
+    arm::advance(plant, s_, volts, no_load, dt, worn_);
+  }
+
+  Lanes step_of(const std::size_t (&rows)[kLanes]) const {
     Lanes dt;
-    for (std::size_t n = 0; n < kLanes; ++n) dt.set(n, w_.spacing[first_[n] + row]);
+    for (std::size_t n = 0; n < kLanes; ++n) dt.set(n, w_.spacing[rows[n]]);
     return dt / static_cast<double>(w_.substeps);
   }
 
-  void read_volts(std::size_t step, Lanes (&volts)[kJoints]) const {
+  void read_volts(const std::size_t (&rows)[kLanes], std::size_t step, Lanes (&volts)[kJoints]) const {
     for (std::size_t n = 0; n < kLanes; ++n) {
-      const double* now = w_.volts + (first_[n] * w_.substeps + step) * kJoints;
+      const double* now = w_.volts + (rows[n] * w_.substeps + step) * kJoints;
       for (std::size_t i = 0; i < kJoints; ++i) volts[i].set(n, now[i]);
     }
   }
@@ -109,10 +182,10 @@ class Run {
   const Task* const tasks_;
   const std::size_t count_;
   Row row_;
-  arm::State<Lanes> s_;
+  arm::State<Lanes> s_{};
   arm::Shown<Lanes> shown_[kJoints];
   Lanes offset_[kJoints];
-  std::size_t first_[kLanes] = {};
+  std::size_t first_[kLanes] = {}, led_[kLanes] = {};
   bool worn_ = false, sags_ = false, loses_ = false, plays_ = false;
 };
 

@@ -17,6 +17,10 @@ struct Windows {
   const double* volts;                // `substeps` rows for every row of the log
   const double* spacing;              // s from a row to the next, one number a row
   std::size_t rows, substeps, every;
+  // How many rows before a window the log leads the links, and where these are in every row of the log, as above. With
+  // none a motor stands where its side says, as fast as its link.
+  const std::int64_t* led = nullptr;
+  const double *log_angles = nullptr, *log_velocities = nullptr, *log_places = nullptr;
 };
 
 // One candidate in one window.

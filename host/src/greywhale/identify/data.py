@@ -34,6 +34,7 @@ class Prepared:
     runs: tuple[Run, ...]
     period: float  # s between rows
     delay: float  # s, age of a reading
+    smooth: Floats  # rad, the follower without its noise
     velocity: Floats
     acceleration: Floats
     places: Floats  # in the potentiometers' play, see `Windows`
@@ -57,7 +58,10 @@ class Windows:
     every: int
     angles: Floats
     velocities: Floats
-    accelerations: Floats
+    led: NDArray[np.int64]  # rows before it through which the log leads the links
+    log_angles: Floats  # in every row of the log, without noise
+    log_velocities: Floats
+    log_places: Floats  # without jumps
     places: Floats  # where each joint stands in its potentiometer's play: -1 or +1, by its last sure motion; 0 before
     measured: Floats  # (windows, rows kept, 4)
     time: Floats  # (rows kept,) from the window's start
@@ -97,7 +101,7 @@ def prepare(log: Log, filter_shift: int | None, judging: IdentificationLimits = 
     moving = np.array([bool(used.any() and np.ptp(log.follower[used, joint]) > MOTION_RAD) for joint in range(JOINTS)])
     places = _places(velocity, runs, limits)
     still = undriven(log, used)
-    return Prepared(log, runs, period, delay, velocity, acceleration, places, noise, moving, still, judging)
+    return Prepared(log, runs, period, delay, smooth, velocity, acceleration, places, noise, moving, still, judging)
 
 
 def pot_noise(log: Prepared, filter_shift: int, supply: float) -> Floats:
@@ -190,7 +194,9 @@ def _rows_of_window(prepared: Prepared) -> int:
 
 
 def windows_of(
-    prepared: Prepared, part: slice | NDArray[np.intp] | None = None, longest_step: float = STEP_S
+    prepared: Prepared,
+    part: slice | NDArray[np.intp] | None = None,
+    longest_step: float = STEP_S,
 ) -> Windows:
     """Windows one after the other over the whole log, or over a `part` of its windows."""
     rows, limits = _rows_of_window(prepared), prepared.limits.data
@@ -212,14 +218,34 @@ def windows_of(
         every=every,
         angles=np.ascontiguousarray(_start_angles(prepared, first)),
         velocities=np.ascontiguousarray(prepared.velocity[first]),
-        accelerations=prepared.acceleration[first],
+        led=_led(prepared, first),
         places=np.ascontiguousarray(prepared.places[first]),
         measured=log.follower[at],
         time=np.asarray(kept * prepared.period, dtype=np.float64),
         volts=_volts(prepared, substeps, spacing),
         spacing=np.ascontiguousarray(spacing),
         substeps=substeps,
+        log_angles=prepared.smooth,
+        log_velocities=prepared.velocity,
+        log_places=_smooth_places(prepared),
     )
+
+
+def _led(prepared: Prepared, first: NDArray[np.int64]) -> NDArray[np.int64]:
+    """The rows of the log before each window by which its motors are led, within its stretch."""
+    begins = np.array([run.start for run in prepared.runs], dtype=np.int64)
+    most = round(prepared.limits.data.led_s / prepared.period)
+    led: NDArray[np.int64] = np.minimum(most, first - begins[np.searchsorted(begins, first, side="right") - 1])
+    return np.ascontiguousarray(led)
+
+
+def _smooth_places(prepared: Prepared) -> Floats:
+    """The places in the play of every row; at a turn the joint takes a moment to cross the play."""
+    from scipy.ndimage import uniform_filter1d  # slow to import
+
+    size = max(1, round(prepared.limits.data.smoothing_s / prepared.period))
+    places: Floats = uniform_filter1d(prepared.places, size, axis=0)
+    return places
 
 
 def _start_angles(prepared: Prepared, first: NDArray[np.int64]) -> Floats:

@@ -17,6 +17,9 @@ class DataLimits:
 
     window_s: float = limit(0.5, "s", "a window is so long: simulated from a known start, it shows what the numbers do")
     smoothing_s: float = limit(0.04, "s", "the angle is smoothed over this to find velocities")
+    led_s: float = limit(
+        0.1, "s", "so long before a window the log leads the links, so that motors apart from them have come to theirs"
+    )
     compared_s: float = limit(5e-3, "s", "windows are compared so often: readings that are closer differ in noise only")
     usual_spacings: float = limit(
         99.0, "%", "the longest step holds in so many of the spacings between rows; the few longer ones may exceed it"
@@ -91,6 +94,11 @@ class SearchLimits:
         0.02, "of 1 + squares over noise", "other orders that are worse by no more are kept as rivals"
     )
     max_rivals: int = limit(2, "models", "so many rivals are kept")
+    soft_teeth: float = limit(
+        0.05,
+        "of log(1 + squares over noise)",
+        "a fit starts from teeth that bend where they alone predict so much better",
+    )
     probe_slack: float = limit(
         0.04, "of the held-out misfit", "an order gets a whole fit only if a short one leaves no more than this on top"
     )
@@ -145,7 +153,9 @@ class UncertaintyLimits:
         "any other quantity is left open beyond this deviation",
     )
     open_factors: tuple[tuple[str, float], ...] = limit(
-        (("drag", 1.0), ("teeth", 1.0)), "as a logarithm", "these matter little: within a factor of e is enough"
+        (("drag", 1.0), ("teeth", 1.0), ("ringing", 1.0)),
+        "as a logarithm",
+        "these matter little: within a factor of e is enough",
     )
     wide_difference: float = limit(
         0.1,

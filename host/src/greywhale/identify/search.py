@@ -26,6 +26,7 @@ from greywhale.identify.candidate import Candidate, WindowsAndLoop
 from greywhale.identify.closed_loop import Loop, LoopResidual
 from greywhale.identify.data import FINE_STEP_S, Prepared
 from greywhale.identify.fit import least_squares_fit
+from greywhale.identify.soft_teeth import with_soft_teeth
 from greywhale.identify.space import COUPLED, MOTOR, Space
 from greywhale.identify.steps import WindowFit
 from greywhale.identify.windows import WindowResidual
@@ -43,6 +44,7 @@ ORDERS: dict[str, tuple[str, ...]] = {
     "sagging supply": ("sag",),
     "zero angles": ("offset",),
     "drivers that lose volts": ("lost", "uneven"),
+    "ringing teeth": ("ringing",),
 }
 # What is tried after motors and Coulomb friction, one line after the other. Orders of one line explain much the same,
 # so they compete; the losers are tried again on top of the winner. An order that did not help may do so later.
@@ -51,7 +53,7 @@ TURNS: tuple[tuple[str, ...], ...] = (
     ("backlash", "play at the potentiometers", "drivers that lose volts"),
     ("Stribeck friction", "load friction", "creep"),
     ("zero angles",),
-    ("lag of the potentiometers", "sagging supply"),
+    ("lag of the potentiometers", "sagging supply", "ringing teeth"),
 )
 # A gear's numbers have several optima. So least squares starts from each of these too: half of the gap in rad, drag,
 # bend of the teeth in rad.
@@ -60,6 +62,8 @@ GEARS: tuple[dict[str, float], ...] = (
     {"gap": 5e-3, "drag": 0.1, "teeth": 2e-3},
     {"gap": 3e-3, "drag": 0.03, "teeth": 5e-3},
 )
+# The gear that a joint has which swings on its teeth, but for how far these bend.
+SWINGING = {"gap": 0.0, "drag": 0.01, "teeth": 2e-3}
 SOME_WINDOWS = 20
 WINDOW_STEPS = 20
 PROBE_STEPS = 8  # of a short fit
@@ -156,7 +160,9 @@ class Search:
         """Fit an order's quantities along with the others, those of gears from several starts."""
         if order != "backlash":
             return self._settle(self._fitted, candidate)
-        return self._fit_best([candidate, *(_with_values(candidate, gear) for gear in GEARS)])
+        soft = with_soft_teeth(self._fitted, _with_values(candidate, SWINGING), self.logs)
+        starts = [_with_values(candidate, gear) for gear in GEARS]
+        return self._fit_best([candidate, *starts, *([] if soft is None else [soft])])
 
     def _fit_begun(self, begin: Candidate) -> Candidate:
         """Fit the quantities of the model to begin with, from its values and from this search's own."""
@@ -189,11 +195,12 @@ class Search:
         )
 
     def _may_follow(self, order: str) -> bool:
-        """True where the best model lacks this order. Without Coulomb friction there is no friction at rest."""
+        """True where the best model lacks this order, and has what the order changes."""
         best = self.best
         assert best is not None
         kinds = best.kinds
-        return ORDERS[order][0] not in kinds and (order not in ("Stribeck friction", "creep") or "coulomb" in kinds)
+        needed = {"Stribeck friction": "coulomb", "creep": "coulomb", "ringing teeth": "teeth"}.get(order)
+        return ORDERS[order][0] not in kinds and (needed is None or needed in kinds)
 
     def _consider(self, candidate: Candidate) -> None:
         self._take(self._measure(candidate))

@@ -56,7 +56,8 @@ KINDS = {
     "stribeck": Kind("rad/s", "speed at which that excess has halved", True, 0.1, 0.1, 5.0, 1e-2, 1.0),
     "gap": Kind("rad", "half of the backlash, at the joint", False, 2e-3, 0.0, 0.03, 1e-4, 1e-2),
     "drag": Kind("", "drag of the grease between the teeth, a share of the damping", True, 0.1, 1e-2, 10.0, 1e-2, 1.5),
-    "teeth": Kind("rad", "bend of the teeth at the motor's stall torque", True, 1e-2, 3e-2, 30.0, 2e-2, 1.5),
+    "teeth": Kind("rad", "bend of the teeth at the motor's stall torque", True, 1e-2, 3e-2, 1e3, 2e-2, 1.5),
+    "ringing": Kind("s", "damping of the teeth, a share of their stiffness", True, 2e-3, 2e-2, 5.0, 2e-2, 1.0),
     "play": Kind("rad", "half of the play between joint and potentiometer", False, 4e-3, 0.0, 0.05, 1e-4, 2e-2),
     "load": Kind("", "friction that the torque passed on adds, a share of it", False, 0.1, 0.0, 0.5, 1e-2, 0.5),
     "creep": Kind("rad/s", "speed at which a joint gives way just below breakaway", False, 5e-3, 0.0, 0.3, 1e-3, 0.05),
@@ -75,7 +76,6 @@ COUPLED = ((0,), (1, 2), (3,))
 OF_THE_ARM = ("sag", "tip")
 WHOLE_ARM = JOINTS
 PITCH = (1, 2)  # only these feel gravity, so only they have a zero angle that matters
-TEETH_S = 2e-3  # how long the damping of teeth of unknown stiffness lasts, s
 
 
 _JOINT_NUMBERS = {f"joint{number}": number for number in range(JOINTS)} | {"arm": WHOLE_ARM}
@@ -229,6 +229,7 @@ class Space:
             "teeth": motor.torque_per_volt * self.arm.drive.supply / joint.gear.stiffness
             if joint.gear.stiffness
             else usual,
+            "ringing": joint.gear.damping / joint.gear.stiffness if joint.gear.damping else usual,
             "play": pot.play or usual,
             "load": joint.friction.load or usual,
             "creep": joint.friction.creep_velocity or usual,
@@ -276,9 +277,9 @@ def _set_joint(rows: Floats, joint: int, here: dict[str, Floats], supply: float)
         lost, more = here["lost"], here["uneven"]
         rows[:, column("lost_up", joint)] = np.maximum(lost + more, 0.0)
         rows[:, column("lost_down", joint)] = np.maximum(lost - more, 0.0)
-    if "gap" in here or "teeth" in here:
+    if "gap" in here or "teeth" in here or "ringing" in here:
         stiffness, mesh = rows[:, column("stiffness", joint)], rows[:, column("mesh_damping", joint)]
-        lasting = np.where(stiffness > 0.0, mesh / np.where(stiffness > 0.0, stiffness, 1.0), TEETH_S)
+        lasting = np.where(stiffness > 0.0, mesh / np.where(stiffness > 0.0, stiffness, 1.0), KINDS["ringing"].start)
         if "teeth" in here or not stiffness.any():
             stiffness[:] = torque * supply / np.exp(here.get("teeth", math.log(KINDS["teeth"].start)))
-            mesh[:] = stiffness * lasting
+        mesh[:] = stiffness * (np.exp(here["ringing"]) if "ringing" in here else lasting)

@@ -31,6 +31,7 @@ EXCITATION = {
     "gap": "reverse slowly and often without load, so that the teeth change sides",
     "drag": "reverse a light joint quickly, so that its link crosses the gap alone",
     "teeth": "reverse with full voltage, so that the teeth bend",
+    "ringing": "stop quickly from full speed, and rest",
     "play": "reverse slowly and often, under load too",
     "load": "move a heavy pose slowly up and down",
     "creep": "rest in poses that the motor must hold",

@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 
 from greywhale import _native
 from greywhale.arm import ArmParameters
-from greywhale.arm.plants import column
+from greywhale.arm.body import Body
+from greywhale.arm.plants import column, plant_row
 from greywhale.base.types import Floats
 from greywhale.identify.data import STEP_S, Prepared, Windows, part_of, some_windows, windows_of
 from greywhale.identify.limits import IDENTIFICATION_LIMITS, DataLimits
@@ -47,12 +48,12 @@ class WindowResidual:
         self.joints = list(joints)
         self.limits = logs[0].limits if logs else IDENTIFICATION_LIMITS
         data = self.limits.data
-        self._body = _native.Arm(arm.native()).body
+        self._body = Body.of(plant_row(arm))
         parts = [_part(numbers, held_out, every, data) for numbers in some_windows(logs, data.max_windows)]
         self._pieces = [(windows_of(log, part, longest_step), log) for part, log in zip(parts, logs, strict=True)]
         self._pieces = [piece for piece in self._pieces if len(piece[0].first)]
         self._logged = tuple(self._pieces)
-        self._sides = [self._sides_of(windows) for windows, _ in self._pieces]
+        self._sides = [self._sides_of(*piece) for piece in self._pieces]
         self._places: dict[int, Floats] = {}  # of the pieces for which they were chosen anew
         self.windows = sum(len(windows.first) for windows, _ in self._pieces)
         self.seconds = sum(len(windows.first) * windows.rows * log.period for windows, log in self._pieces)
@@ -178,6 +179,10 @@ class WindowResidual:
             velocities=windows.velocities,
             sides=sides,
             places=windows.places,
+            led=windows.led,
+            log_angles=windows.log_angles,
+            log_velocities=windows.log_velocities,
+            log_places=windows.log_places,
             rows=windows.rows,
             volts=windows.volts,
             spacing=windows.spacing,
@@ -200,14 +205,12 @@ class WindowResidual:
             before += len(windows.first)
         return np.concatenate(clusters), np.concatenate(joints)
 
-    def _sides_of(self, windows: Windows) -> Floats:
-        """Return the teeth that touch at a window's start: those that give the torque that the links take."""
-        sides = np.zeros_like(windows.angles)
-        for row in range(len(sides)):
-            q, v = list(windows.angles[row]), list(windows.velocities[row])
-            torque = self._body.mass_matrix(q) @ windows.accelerations[row] + self._body.bias(q, v)
-            still = (np.abs(torque) < 1e-3) & (np.abs(windows.velocities[row]) < 0.05)
-            sides[row] = np.where(still, 0.0, np.sign(torque))
+    def _sides_of(self, windows: Windows, log: Prepared) -> Floats:
+        """Return the teeth that touch where the log begins to lead: those that give the torque that the links take."""
+        at = windows.first - windows.led
+        torque = self._body.torque(log.smooth[at], log.velocity[at], log.acceleration[at])
+        still = (np.abs(torque) < 1e-3) & (np.abs(log.velocity[at]) < 0.05)
+        sides: Floats = np.where(still, 0.0, np.sign(torque))
         return sides
 
 
