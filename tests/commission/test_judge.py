@@ -59,7 +59,7 @@ def test_each_fault_has_its_limit_and_its_sentence(name: str, passes: float, fai
     assert not failed.passed
     assert says in failed.faults[0]
     assert failed.restless == (name != "error")
-    assert failed.hunts == (name in ("unrest", "rattle"))
+    assert failed.hunts == (name == "unrest")
     assert verdict(with_joint(name, 2, fails), 1).passed, "the other joints are not blamed"
     assert (1.0 < failed.excess < 1.2) == (name != "error")
 

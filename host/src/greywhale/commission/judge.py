@@ -78,18 +78,13 @@ class TrialVerdict:
     joint: int
     faults: tuple[str, ...]
     restless: bool  # one of the faults is unrest, rattling, chatter or ripple
-    chatters_only: bool  # or hisses
+    hunts: bool  # does not come to rest after its moves, or ended the trial
     excess: float  # how many times these are what they may be; inf where it ended the trial
-    score: float  # in what a hand leads; NaN where the check was not played to its end, 0 for one not in use
+    score: float  # in what a hand leads, as far as it was played; NaN where it was not, 0 for one not in use
     share: float  # of all joints' error there, with the controllers from before
-    known: bool  # whether the joint can be judged: the check was whole, or this joint ended it
-    passes_at_a_price: bool  # whether it passed, or has no other fault than a little too much of one of these
+    known: bool  # whether the joint can be judged: this joint ended the check, or was seen where a hand leads
+    passes_at_a_price: bool  # whether it passed, or has no other fault than a little too much of one of these, as seen
     judging: CommissioningLimits = field(default=COMMISSIONING_LIMITS, repr=False, compare=False)
-
-    @property
-    def hunts(self) -> bool:
-        """True where the joint does not come to rest, or rattles."""
-        return self.restless and not self.chatters_only
 
     @property
     def passed(self) -> bool:
@@ -136,7 +131,6 @@ def _judge(
         faults.append(f"it hunts at rest ({1e3 * unrest.value:.1f} mrad rms, at most {1e3 * unrest.limit:.1f})")
     if rattle.share > 1.0:
         faults.append(f"it rattles in motion ({1e3 * rattle.value:.1f} mrad rms, at most {1e3 * rattle.limit:.1f})")
-    quiet = not faults
     if chatter.share > 1.0:
         faults.append(f"its voltage chatters ({chatter.value:.0f} times a second)")
     if ripple.share > 1.0:
@@ -148,14 +142,15 @@ def _judge(
             faults.append(f"it follows {part} worse than before ({ratio:.2g} times the error)")
     if foreseen:
         faults.append(foreseen)
-    was = before.error[LED].sum(axis=0)
-    score = float(measured.error[LED, joint].sum() / max(was[joint], 1e-9))
-    share = float(was[joint] / max(was.sum(), 1e-9))
-    known = measured.whole or bool(faults)
+    was, seen = before.error[LED], np.isfinite(measured.error[LED, joint])
+    shown = measured.error[LED, joint][seen].sum() / max(was[seen, joint].sum(), 1e-9)
+    score = float(shown) if seen.any() else np.nan
+    share = float(was[:, joint].sum() / max(was.sum(), 1e-9))
+    known = bool(seen.any() or faults)
     hardly = restless and len(faults) == 1 and excess <= judging.swings.bearable_excess
-    priced = measured.whole and (hardly or not faults)
-    chatters = restless and quiet
-    return TrialVerdict(joint, tuple(faults), restless, chatters, excess, score, share, known, priced, judging)
+    priced = bool(seen.any()) and (hardly or not faults)
+    hunts = bool(guilty) or unrest.share > 1.0
+    return TrialVerdict(joint, tuple(faults), restless, hunts, excess, score, share, known, priced, judging)
 
 
 @dataclass(frozen=True)

@@ -55,14 +55,19 @@ class Trial:
     traces: Traces = field(repr=False)
 
     @property
+    def whole(self) -> bool:
+        """True where the check was played to its end."""
+        return not self.stopped and self.measured.whole
+
+    @property
     def passed(self) -> bool:
-        """True where all joints passed, with each other."""
-        return all(verdict.passed for verdict in self.verdicts)
+        """True where all joints passed, with each other, to the end of the check."""
+        return self.whole and all(verdict.passed for verdict in self.verdicts)
 
     @property
     def passes_at_a_price(self) -> bool:
-        """True where all joints passed, or are a little restless and have no other fault."""
-        return all(verdict.passes_at_a_price for verdict in self.verdicts)
+        """True where all joints passed to the end of the check, or are a little restless and have no other fault."""
+        return self.whole and all(verdict.passes_at_a_price for verdict in self.verdicts)
 
     @property
     def score(self) -> float:
