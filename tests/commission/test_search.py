@@ -17,7 +17,7 @@ from greywhale.commission.journal import CommissioningJournal
 from greywhale.commission.limits import COMMISSIONING_LIMITS
 from greywhale.commission.measures import measure
 from greywhale.commission.motions import PARTS, check_motion
-from greywhale.commission.search import CheckOnModel
+from greywhale.commission.search import GAINS, CheckOnModel
 from greywhale.commission.trials import Trials
 from greywhale.files.arm import default_arm
 from greywhale.loop.controllers import controllers_of
@@ -161,7 +161,26 @@ def test_what_the_arm_showed_beyond_the_model_the_model_may_show_less_of(check: 
     aims, least = check.corrected(shown).aims, 0.1 * check.aims.rattle[PARTS.index("reaches"), 2]
     assert aims.rattle[PARTS.index("reaches"), 2] == pytest.approx(max(0.85 / 2.0 * predicted, least))
     assert aims.rattle[:, 0] == pytest.approx(check.aims.rattle[:, 0]), "the model was right about the others"
-    assert aims.unrest[:, 1] == pytest.approx(0.5 * check.aims.unrest[:, 1])
+    assert aims.unrest[:, 1] == pytest.approx(check.aims.unrest[:, 1]), "lower gains are for that, not lower aims"
+
+
+def test_a_joint_that_hunted_gets_no_higher_gain_and_plants_that_hunt_as_it_did(
+    check: CheckOnModel, rig: SimulatedRig
+) -> None:
+    check = searching(check, packs=((0.2, 8),), retry_error=np.inf)
+    check.trials.done = list(check.trials.done)
+    wild = varied(check, 2, {KP: 20.0, KI: 2.0})
+    trial = check.trials.play(lambda: rig, wild)  # type: ignore[arg-type, return-value]
+    assert trial.verdicts[2].hunts
+    corrected = check.corrected(trial)
+    assert len(corrected.plants) == len(check.plants) + 1
+    dear, cheap = (costs_beside(one, wild)[1][2] for one in (corrected, check))
+    assert dear > 1.2 * cheap
+    begin = controllers_of(check.trials.table)
+    found = replace(corrected, most=begin).search(begin, ALL, 0, show_no_progress)
+    assert (found[:, GAINS] <= begin[:, GAINS]).all()
+    assert corrected.most is not None
+    assert (corrected.most[2] == wild[2]).all()
 
 
 def test_a_joint_that_passed_keeps_its_controller(check: CheckOnModel) -> None:

@@ -2,25 +2,30 @@
 
 The tuning does not know the check and its limits; this search does, and its trials cost no time of the arm. It varies
 the scaling factors of the tuned controllers by the tuning's own optimiser. What a trial shows beyond the model corrects
-the next search. A joint costs the root of its error in what a hand leads, as a share of that before, and more
+the next search: by lower aims, and by plants that hunt as the arm did. A joint that hunted never gets higher gains
+again. A joint costs the root of its error in what a hand leads, as a share of that before, and more
 
 - beyond a share of what the check allows, and where it hunts on a worse arm: looser gears, more loop gain, slower
   potentiometers;
 - where it would follow steps hardly better than before, if the model knows the joint's steps, swing between them,
   overshoot in moves, or hiss after them;
-- for the tuning's margins, without twice the loop gain and softer teeth, for which the worse arm stands.
+- for the tuning's margins, without twice the loop gain and softer teeth, for which the worse arm stands; on plants
+  that hunt as the arm did softer teeth count, too.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
+from greywhale.arm import ArmParameters
 from greywhale.arm.parameters import with_usual_noise
 from greywhale.arm.plants import columns, plant_row
 from greywhale.base.types import Controllers, Flags, Floats, NotedProgress
+from greywhale.commission.evidence import failing_plants
 from greywhale.commission.foresee import Foresight
 from greywhale.commission.judge import LED, RESTLESS, Limits
 from greywhale.commission.limits import SearchLimits
@@ -42,23 +47,29 @@ from greywhale.tune.search.space import Space
 NONE = np.zeros(JOINTS, dtype=bool)
 NO_LIMIT_V = np.full(JOINTS, np.inf)  # of ripple in the margins' rests: the check's is limited
 LEAST_RAD2 = 1e-9
-KI, KU, CE_TICKS = (CONTROLLER_COLUMNS.index(name) for name in ("ki", "ku_mv", "ce_ticks"))
+KNOWN = 2  # plants that every search has: the model, and a worse arm
+KP, KD, KI, KU, CE_TICKS = (CONTROLLER_COLUMNS.index(name) for name in ("kp", "kd", "ki", "ku_mv", "ce_ticks"))
+GAINS = [KP, KD, KI, KU]
 
 
 @dataclass(frozen=True)
 class CheckOnModel:
     """The check, played on a model: it gives the costs of controllers, joint by joint."""
 
+    model: ArmParameters
     arm: LedModel
-    plants: Floats  # (2, columns): the model, and a worse arm
+    plants: Floats  # (2 or more, columns): the model, a worse arm, and plants that hunt as the arm did
     trials: Trials
     foresight: Foresight
-    margins: Margins
+    margins_on: Callable[[Floats], Margins]  # of plants (n, columns)
+    margins: Margins  # on the model and looser gears
     limits: Limits  # of the arm
     aims: Limits  # what a set may show on the model
     led: Floats  # (4,) rad², the model's error before in what a hand leads
     swings: Floats  # (2, 4) rad rms, between steps
     overshoot: Floats  # (4,) % of a step, in the check's moves
+    failing: Margins | None = None  # on the plants that hunt as the arm did
+    most: Controllers | None = None  # (4, 13): no joint gets a higher gain than this
 
     @classmethod
     def of(cls, model: Model, trials: Trials, foresight: Foresight, seed: int, threads: int) -> CheckOnModel:
@@ -67,7 +78,8 @@ class CheckOnModel:
         wanted, running = trials.judging.search, controllers_of(table)[None]
         plants = np.vstack([plant_row(arm), loosen_gears(arm, wanted.gear_sigmas)])
         judging = trials.judging.tuning
-        margins = Margins(arm, table, plants, threads=threads, searching=True, seed=seed, judging=judging)
+        margins_on = partial(Margins, arm, table, threads=threads, searching=True, seed=seed, judging=judging)
+        margins = margins_on(plants)
         plants = np.vstack([plants[:1], _worsen(plants[1:], wanted)])
         led = LedModel(arm, table, before.traces)
         (traces,) = led.run(running, plants[:1])
@@ -75,10 +87,12 @@ class CheckOnModel:
         quiet_v = trials.judging.swings.bounds.quiet_share * table.supply_v
         limits, own = (Limits.of(one, NONE, quiet_v, trials.judging) for one in (before.measured, known))
         return cls(
+            model=arm,
             arm=led,
             plants=plants,
             trials=trials,
             foresight=foresight,
+            margins_on=margins_on,
             margins=margins,
             limits=limits,
             aims=Limits(
@@ -98,7 +112,9 @@ class CheckOnModel:
         return self.trials.judging.search
 
     def corrected(self, trial: Trial) -> CheckOnModel:
-        """Return the check with lower aims: the model may show less of what a trial had too much of, by that ratio."""
+        """Return the check with lower aims: the model may show less of what a trial had too much of, by that ratio. All
+        plants that hunt as the arm did so far join it, and no joint that hunted may have a higher gain than then.
+        """
         (known,) = self._measured(trial.rows[None], 0)
         aims: dict[str, Floats] = {}
         surer, least = self.wanted.correction_share, self.wanted.least_aim
@@ -106,8 +122,22 @@ class CheckOnModel:
             aim, shown = getattr(self.aims, name), getattr(trial.measured, name) / getattr(self.limits, name)
             ratio = np.divide(getattr(known, name), shown, out=np.full_like(shown, np.inf), where=shown > surer)
             aims[name] = np.minimum(aim, np.maximum(surer * ratio, least * aim))
-        aims["unrest"][:, [np.isinf(verdict.excess) for verdict in trial.verdicts]] /= 2.0
-        return replace(self, aims=Limits(**aims))
+        failing, most = failing_plants(self.model, self.trials), np.full(trial.rows.shape, np.iinfo(np.int32).max)
+        for one in self.trials.done[1:]:
+            hunted = np.flatnonzero([verdict.hunts for verdict in one.verdicts])
+            most[hunted] = np.minimum(most[hunted], one.rows[hunted])
+        return replace(
+            self,
+            aims=Limits(**aims),
+            plants=np.vstack([self.plants[:KNOWN], failing]),
+            failing=self.margins_on(failing) if len(failing) else None,
+            most=most,
+        )
+
+    def scores(self, controllers: Controllers) -> Floats:
+        """(n, 4): the error that the model shows in what a hand leads, as a share of that before."""
+        shown = [one.error[LED].sum(axis=0) for one in self._measured(controllers, 0)]
+        return np.array(shown) / np.maximum(self.led, LEAST_RAD2)
 
     def costs(self, controllers: Controllers) -> Floats:
         """(n, 4) of controllers (n, 4, 13)."""
@@ -116,21 +146,27 @@ class CheckOnModel:
 
     def _judged(self, controllers: Controllers) -> tuple[Floats, Floats]:
         """The error in what a hand leads, rms as a share of that before, and what the rest costs, (n, 4) each."""
-        unrest = self.margins.unrest(controllers)
-        near = {name: found for name, found in unrest.items() if name not in (TWICE, TEETH)}
-        prices, wanted = penalty(near, NO_LIMIT_V, self.trials.judging.tuning), self.wanted
-        ratios, restless = self.foresight.estimate(controllers, self.plants[1:])
+        prices, wanted = self._price_margins(self.margins, controllers, (TWICE, TEETH)), self.wanted
+        if self.failing is not None:
+            prices += self._price_margins(self.failing, controllers, (TWICE,))
+        ratios, restless = self.foresight.estimate(controllers, self.plants[1:KNOWN])
         prices += wanted.price * np.maximum(restless / self.swings[:, None] - 1.0, 0.0).max(axis=0)
         worse = np.maximum(ratios / wanted.before_aim - 1.0, 0.0)
         prices += wanted.steps_price * np.where(self.foresight.believed, worse, 0.0)
         errors = np.empty_like(prices)
-        known, unsteady = self._measured(controllers, 0), self._measured(controllers, 1, only_unrest=True)
-        for row, (one, other) in enumerate(zip(known, unsteady, strict=True)):
+        for row, one in enumerate(self._measured(controllers, 0)):
             errors[row] = np.sqrt(one.error[LED].sum(axis=0) / np.maximum(self.led, LEAST_RAD2))
-            prices[row] += wanted.price * (self._beyond(one, (*RESTLESS, "error")) + self._beyond(other, ["unrest"]))
+            prices[row] += wanted.price * self._beyond(one, (*RESTLESS, "error"))
             overshoot = np.nan_to_num(one.worst("overshoot"))
             prices[row] += wanted.price * np.maximum(overshoot / self.overshoot - 1.0, 0.0)
+        for plant in range(1, len(self.plants)):
+            for row, one in enumerate(self._measured(controllers, plant, only_unrest=True)):
+                prices[row] += wanted.price * self._beyond(one, ["unrest"])
         return errors, prices
+
+    def _price_margins(self, margins: Margins, controllers: Controllers, left_out: Sequence[str]) -> Floats:
+        near = {name: found for name, found in margins.unrest(controllers).items() if name not in left_out}
+        return penalty(near, NO_LIMIT_V, self.trials.judging.tuning)
 
     def _measured(self, controllers: Controllers, plant: int, *, only_unrest: bool = False) -> Iterator[Measures]:
         """Measure controllers (n, 4, 13), one after another, in the check on one of the plants."""
@@ -161,13 +197,19 @@ class CheckOnModel:
     def _search_around(
         self, begin: Controllers, vary: Flags, seed: int, report: NotedProgress, what: str = "searching on the model"
     ) -> Controllers:
-        table, best, limits = self.trials.table, begin.copy(), self.trials.judging.tuning.space
+        table, limits = self.trials.table, self.trials.judging.tuning.space
         whole = sum(sets for _, sets in self.wanted.packs)
 
-        def costs(controllers: Controllers) -> Floats:
-            return self.costs(np.where(vary[:, None], controllers, begin))
+        def allowed(controllers: Controllers) -> Controllers:
+            rows = controllers.copy()
+            if self.most is not None:
+                rows[..., GAINS] = np.minimum(rows[..., GAINS], self.most[:, GAINS])
+            return np.where(vary[:, None], rows, begin)
 
-        found = SearchState.nothing(begin)
+        def costs(controllers: Controllers) -> Floats:
+            return self.costs(allowed(controllers))
+
+        best, found = allowed(begin), SearchState.nothing(begin)
         search = LockstepSearch(costs, found, tick=lambda now: report(what, min(1.0, now.evaluations / whole)))
         for number, (sigma, sets) in enumerate(self.wanted.packs):
             if number:
@@ -182,7 +224,7 @@ class CheckOnModel:
                 groups=TURNS,
                 sigma=sigma,
             )
-            best = self._best_together(best, np.where(vary[:, None], found.best, begin))
+            best = self._best_together(best, allowed(found.best))
         return best
 
     def _best_together(self, known: Controllers, new: Controllers) -> Controllers:
