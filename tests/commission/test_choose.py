@@ -10,8 +10,15 @@ import pytest
 from greywhale.commission.arm_on_port import ArmOnPort
 from greywhale.commission.choose import JointTrials, confirm
 from greywhale.commission.trials import Trial, Trials
-from tests.commission.simulated import SimulatedRig
+from greywhale.loop.controllers import controllers_of
+from tests.commission.simulated import KI, KP, SimulatedRig
 from tests.commission.test_trials import BETTER, WILD, play, play_before, stiffer
+
+
+def chosen(trials: Trials, joints: list[JointTrials], rig: SimulatedRig, tuned: np.ndarray | None = None) -> Trial:
+    """By default the tuning found nothing new."""
+    rows = controllers_of(trials.table) if tuned is None else tuned
+    return confirm(trials, joints, lambda: rig, rows)  # type: ignore[arg-type, return-value]
 
 
 def joints_of(trials: Trials) -> list[JointTrials]:
@@ -26,7 +33,7 @@ def test_the_joints_best_are_played_together_before_they_count(trials: Trials, r
     play_before(trials, rig)
     play(trials, rig, stiffer(trials, [0, 1], BETTER))
     play(trials, rig, stiffer(trials, [2], BETTER))
-    best = confirm(trials, joints_of(trials), lambda: rig)  # type: ignore[arg-type, return-value]
+    best = chosen(trials, joints_of(trials), rig)
     assert best is trials.done[3]
     assert best.passed
     assert np.array_equal(best.rows, stiffer(trials, [0, 1, 2], BETTER))
@@ -40,7 +47,7 @@ def test_a_combination_that_fails_on_the_arm_is_not_chosen(trials: Trials, rig: 
     joints = joints_of(trials)
     wild = stiffer(trials, [2], WILD)[2]
     joints[2].add(wild, joints[1].ranked()[0].verdict)
-    best = confirm(trials, joints, lambda: rig)  # type: ignore[arg-type, return-value]
+    best = chosen(trials, joints, rig)
     assert best.passed
     assert not np.array_equal(best.rows[2], wild)
     assert np.array_equal(best.rows[1], stiffer(trials, [1], BETTER)[1]), "the other joint keeps its better controller"
@@ -66,7 +73,7 @@ def test_what_shakes_others_or_ends_the_motion_steps_back_alone(
         return trials.done[-1]
 
     monkeypatch.setattr(trials, "play", play)
-    best = confirm(trials, joints, lambda: rig)  # type: ignore[arg-type, return-value]
+    best = chosen(trials, joints, rig)
     assert np.array_equal(best.rows[1], mild[1])
     assert np.array_equal(best.rows[2], mild[2]) == ends
 
@@ -74,4 +81,29 @@ def test_what_shakes_others_or_ends_the_motion_steps_back_alone(
 def test_where_nothing_passes_what_was_before_is_chosen(trials: Trials, rig: SimulatedRig) -> None:
     before = play_before(trials, rig)
     play(trials, rig, stiffer(trials, [1], WILD))
-    assert confirm(trials, joints_of(trials), lambda: rig) is before  # type: ignore[arg-type, return-value]
+    assert chosen(trials, joints_of(trials), rig) is before
+
+
+def test_a_tuned_controller_is_played_before_a_joint_keeps_what_it_had(trials: Trials, rig: SimulatedRig) -> None:
+    """The set that the search found hunts, and nothing else was tried."""
+    play_before(trials, rig)
+    play(trials, rig, stiffer(trials, [1], WILD))
+    tuned = stiffer(trials, [0, 1], BETTER)
+    best = chosen(trials, joints_of(trials), rig, tuned)
+    assert np.array_equal(best.rows, tuned)
+    assert best.passed
+
+
+def test_a_joint_that_hunted_gets_its_tuned_controller_then_ever_softer_ones(trials: Trials, rig: SimulatedRig) -> None:
+    play_before(trials, rig)
+    joint, before = joints_of(trials)[0], controllers_of(trials.table)[0]
+    hunts = replace(joint.tried[0].verdict, hunts=True, faults=("joint 0 hunted",), passes_at_a_price=False)
+    searched, tuned = before.copy(), before.copy()
+    searched[[KP, KI]], tuned[[KP, KI]] = (6 * before[KP], 100), (4 * before[KP], 900)
+    shares, met = (1.0, 0.5, 0.25), list[np.ndarray]()
+    for row in (searched, None, None, None):
+        joint.add(met[-1] if row is None else row, hunts)
+        met.append(joint.calmer(tuned, shares))
+    assert [row[KP] / before[KP] for row in met] == pytest.approx([4.0, 2.0, 1.0, 1.0])
+    assert [row[KI] for row in met[:3]] == [100] * 3, "no integral part above that which hunted"
+    assert np.array_equal(met[3], before)

@@ -111,9 +111,8 @@ def test_a_round_ends_where_more_trials_are_not_worth_their_time(
         (f"round 1, trial {number} of 3 at most: recording", note) for number, note in enumerate(["", *beside[:2]], 1)
     ]
     rig.before = rig.stored = outcome.trials.table
-    assert (
-        len(commission(options(out=tmp_path / "all good", judging=ending(good_error_share=1.0))).rounds[0].trials) == 1
-    )
+    trials = commission(options(out=tmp_path / "all good", judging=ending(good_error_share=1.0))).rounds[0].trials
+    assert [one.whole for one in trials] == [False, True], "a trial that a joint ended is no end of a round"
 
 
 def test_what_failed_is_searched_again_and_what_did_not_keeps_its_controller(whole: Whole) -> None:

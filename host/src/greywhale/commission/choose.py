@@ -1,6 +1,8 @@
-"""The end of a commissioning: each joint's best, tried together on the arm; where that is worse, joints step back.
+"""Each joint's controllers: what the arm said about them, and which is next where one hunted.
 
-First those that fail; where they have nothing else left, those beside them, which shake them.
+At the end of a commissioning each joint's best are tried together on the arm; where that is worse, joints step back:
+first those that fail; where they have nothing else left, those beside them, which shake them. A joint keeps what it had
+before only where its tuned controller was tried, too.
 """
 
 from __future__ import annotations
@@ -10,13 +12,15 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from greywhale.base.types import Integers
+from greywhale.base.types import Controllers, Integers
 from greywhale.commission.arm_on_port import ArmOnPort
 from greywhale.commission.judge import TrialVerdict
 from greywhale.commission.trials import Trial, Trials
 from greywhale.loop.controllers import controllers_of
+from greywhale.protocol.table import CONTROLLER_COLUMNS
 
 Row = Integers  # (13,)
+PE_B, KP, KD, KI, KU = (CONTROLLER_COLUMNS.index(name) for name in ("pe_b", "kp", "kd", "ki", "ku_mv"))
 
 
 @dataclass(frozen=True)
@@ -47,16 +51,49 @@ class JointTrials:
         """Note a judged controller."""
         self.tried.append(TriedController(row.copy(), verdict))
 
+    def has_tried(self, row: Row) -> bool:
+        """True where the arm said something about this controller."""
+        return any(np.array_equal(one.row, row) for one in self.tried)
 
-def confirm(trials: Trials, joints: Sequence[JointTrials], connect: Callable[[], ArmOnPort]) -> Trial:
+    @property
+    def hunted(self) -> list[Row]:
+        """The controllers with which the joint hunted at rest, or ended a trial."""
+        return [one.row for one in self.tried if one.verdict.hunts]
+
+    def calmer(self, tuned: Row, shares: Sequence[float]) -> Row:
+        """The tuned controller, with these shares of its gains, that is the first to be softer than all that hunted;
+        where none is, the one from before.
+        """
+        hunted = self.hunted
+        for share in shares:
+            row = tuned.copy()
+            row[[KP, KD, KI]] = np.rint(share * row[[KP, KD, KI]])
+            row[KI] = min([row[KI], *(one[KI] for one in hunted)])
+            if all(_stiffness(row) < _stiffness(one) for one in hunted):
+                return row
+        return self.tried[0].row
+
+
+def _stiffness(row: Row) -> float:
+    """The volts for a small error, in a unit of its own."""
+    return float(row[KU]) * float(row[KP]) / float(row[PE_B])
+
+
+def confirm(
+    trials: Trials, joints: Sequence[JointTrials], connect: Callable[[], ArmOnPort], tuned: Controllers
+) -> Trial:
     """The best set that was measured as a whole. A combination that was not measured is played before it counts."""
     before = controllers_of(trials.table)
     failed: list[list[bytes]] = [[] for _ in joints]
 
     def best(joint: int) -> Row:
-        """A joint's best that has not failed in company."""
-        left = (one.row for one in joints[joint].ranked() if one.row.tobytes() not in failed[joint])
-        return next(left, before[joint])
+        """A joint's best that has not failed in company; before that from before, the tuned one where it is untried."""
+        one, known = joints[joint], before[joint].tobytes()
+        left = [tried.row for tried in one.ranked()]
+        if not one.has_tried(tuned[joint]):
+            better = [row for row in left if row.tobytes() != known]
+            left = [*better, tuned[joint], before[joint]]
+        return next((row for row in left if row.tobytes() not in failed[joint]), before[joint])
 
     rows = np.array([best(joint) for joint in range(len(joints))])
     for _ in range(trials.judging.rounds.max_confirmations):

@@ -18,6 +18,7 @@ from greywhale.files import controller as controller_file
 from greywhale.identify import IdentificationResult, identify, validated
 from greywhale.loop import controller_row
 from greywhale.loop.led_model import predict
+from greywhale.protocol.firmware import JOINTS
 from greywhale.protocol.table import ParameterTable
 from greywhale.tune import DEFAULT_BUDGET, TuningResult, tune
 from greywhale.tune.model import Model, load_model
@@ -29,13 +30,23 @@ BUDGET = DEFAULT_BUDGET // 2
 
 @dataclass(frozen=True)
 class LearntController:
-    """A round's model and controllers (4, 13), and what speaks against the model."""
+    """A round's model and controllers (4, 13): the tuned ones, and those that a search on the model made of them; and
+    what speaks against the model.
+    """
 
     arm: ArmParameters
+    tuned: Controllers
     controllers: Controllers
     doubts: tuple[str, ...]
     steady: bool  # whether all margins hold on the model
     others: dict[str, int] = field(default_factory=dict)  # raw, what the model says of the board's other parameters
+    # Scores on the model, (2, 4): of the tuned controllers, and of the others.
+    promised: Floats = field(default_factory=lambda: np.full((2, JOINTS), np.nan))
+
+    @property
+    def fallback(self) -> Controllers:
+        """The tuned controllers; where a joint would follow worse than before with its own, by the model, the other."""
+        return np.where((self.promised[0] < 1.0)[:, None], self.tuned, self.controllers)
 
 
 @dataclass(frozen=True)
@@ -95,7 +106,7 @@ class RoundTuner:
         assert facts is not None
         found = controller_file.load(self._controllers)
         rows, others = controller_row(found), found.other_values()
-        return model, LearntController(model.arm, rows, tuple(facts["doubts"]), facts["steady"], others)
+        return model, LearntController(model.arm, rows, rows, tuple(facts["doubts"]), facts["steady"], others)
 
     def _find_model(self, fit: Evidence, report: NotedProgress) -> IdentificationResult:
         begin = self.begin if self.begin is not None and "covariance" in (self.begin.identification or {}) else None

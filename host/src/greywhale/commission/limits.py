@@ -49,6 +49,24 @@ class RoundLimits:
     max_error_share: float = limit(
         0.5, "of the error before", "another round follows while a joint's best is above this"
     )
+    poor_times: float = limit(
+        2.0,
+        "times the error",
+        "a joint is poor that follows so much worse than its model promised: arms and models are a factor of 1.8 apart "
+        "at most where a model is right",
+        MEASURED_ON_ARMS,
+    )
+    poor_error_share: float = limit(
+        0.03, "of the error before", "what is below this is not poor, whatever the model says", MEASURED_ON_ARMS
+    )
+    poor_again_share: float = limit(
+        0.15, "of the error before", "another round follows while a joint is poor and above this"
+    )
+    softer_shares: tuple[float, ...] = limit(
+        (1.0, 0.5, 0.25),
+        "of the tuned gains",
+        "a joint that ended a trial gets its tuned controller, then softer ones, before it keeps that from before",
+    )
     good_error_share: float = limit(
         0.04,
         "of the error before",

@@ -33,6 +33,9 @@ class ForeseenFacts(TrialFacts):
 class CommissioningFacts(TypedDict):
     improved: bool  # whether the board ends with other controllers than before
     best: str  # name of the trial that the board ends with
+    score: float  # what it leaves of the error from before in what a hand leads, all joints together
+    tuned_score: float | None  # the same of the first round's tuned set, before the search on the model
+    tuned_measured: bool  # whether the arm showed that, joint by joint, and not the model
     parameter_crc: Crc
     rounds: list[RoundFacts]
     trials: list[ForeseenFacts]  # those from before first
@@ -50,6 +53,18 @@ class Round:
     number: int
     learnt: LearntController
     trials: tuple[Trial, ...]
+
+
+@dataclass(frozen=True)
+class TunedSet:
+    """What a round's tuned set, before the search on the model, leaves of the error in what a hand leads.
+
+    `measured` says whether every joint's tuned controller was played to the end, beside whatever others.
+    """
+
+    score: float
+    measured: bool
+    hunted: tuple[int, ...]  # joints that hunted with it
 
 
 def predict_trial(arm: ArmParameters, trial: Trial, check: Check) -> Measures:
@@ -92,9 +107,13 @@ class CommissioningResult:
         return next((one for one in self.rounds if any(trial is done for done in one.trials)), self.rounds[-1])
 
     def as_dict(self) -> CommissioningFacts:
+        tuned = self.tuned
         return {
             "improved": self.improved,
             "best": self.best.name,
+            "score": round(self.best.score, 4),
+            "tuned_score": None if tuned is None else round(tuned.score, 4),
+            "tuned_measured": tuned is not None and tuned.measured,
             "parameter_crc": f"0x{self.best.table.crc:04x}",
             "rounds": [
                 {
@@ -110,6 +129,24 @@ class CommissioningResult:
                 for trial in self.trials.done
             ],
         }
+
+    @property
+    def tuned(self) -> TunedSet | None:
+        """What the first round's tuned set does to the arm; None where there was no round."""
+        if not self.rounds:
+            return None
+        learnt = self.rounds[0].learnt
+        scores, hunted, measured = learnt.promised[0].copy(), [], True
+        for joint in self.trials.table.joints_in_use:
+            tried = [one for one in self.trials.done[1:] if (one.rows[joint] == learnt.tuned[joint]).all()]
+            hunted += [joint] if any(one.verdicts[joint].hunts for one in tried) else []
+            played = [one for one in tried if one.whole]
+            measured &= bool(played)
+            if played:
+                most = max(played, key=lambda one: int((one.rows == learnt.tuned).all(axis=1).sum()))
+                scores[joint] = most.verdicts[joint].score
+        shares = np.array([verdict.share for verdict in self.trials.before.verdicts])
+        return TunedSet(float((shares * np.nan_to_num(scores)).sum()), measured, tuple(hunted))
 
     @property
     def headline(self) -> str:
@@ -130,10 +167,24 @@ class CommissioningResult:
         """The result for people: the set that the board has, and what changed on the arm, joint by joint."""
         played = len(self.trials.done) - 1
         tried = f"{counted(played, 'set')} of controllers tried on the arm in {counted(len(self.rounds), 'round')}."
-        return [Sentences([self.headline, tried]), *(self._tell_changes() if self.improved else ())]
+        return [
+            Sentences([self.headline, tried, *self._tell_tuned()]),
+            *(self._tell_changes() if self.improved else ()),
+        ]
 
     def text(self) -> str:
         return Telling(self.tell()).text()
+
+    def _tell_tuned(self) -> Iterator[str]:
+        """The score beside that of the tuned set, which a commissioning is to beat."""
+        tuned = self.tuned
+        if tuned is not None and self.trials.before.measured.whole:
+            told = "on the arm" if tuned.measured else "by the model"
+            hunted = "".join(f"; joint {joint} ({JOINT_NAMES[joint]}) hunted with it" for joint in tuned.hunted)
+            yield (
+                f"Of the error from before in what a hand leads, {100.0 * self.best.score:.1f} % is left now. "
+                f"The tuned set alone leaves {100.0 * tuned.score:.1f} % {told}{hunted}."
+            )
 
     def _tell_changes(self) -> Iterator[Part]:
         before, after = self.trials.before.measured, self.best.measured

@@ -19,7 +19,7 @@ from greywhale.base.side_job import SideJob
 from greywhale.base.types import Controllers, Flags, NotedProgress, show_no_progress
 from greywhale.commission import learn, start
 from greywhale.commission.arm_on_port import ArmOnPort, connected
-from greywhale.commission.choose import JointTrials, confirm
+from greywhale.commission.choose import JointTrials, Row, confirm
 from greywhale.commission.evidence import Evidence, failing_plants, to_fit, to_validate
 from greywhale.commission.foresee import foresee
 from greywhale.commission.journal import AnewError, CommissioningJournal
@@ -28,7 +28,7 @@ from greywhale.commission.motions import JointRange, check_motion
 from greywhale.commission.request import CommissioningRequest
 from greywhale.commission.result import CommissioningResult, Round, errors_beside, predict_trial
 from greywhale.commission.search import CheckOnModel
-from greywhale.commission.trials import Trials
+from greywhale.commission.trials import Trial, Trials
 from greywhale.files.arm import load_arm
 from greywhale.files.leader import load_leader, save_leader
 from greywhale.files.log import Log, read_evidence
@@ -53,6 +53,11 @@ def is_enough(hoped: Sequence[float], limits: RoundLimits = COMMISSIONING_LIMITS
     patience = limits.trials_without_gain
     stalls = len(hoped) > patience and hoped[-1] > (1.0 - limits.min_gain) * hoped[-1 - patience]
     return stalls or hoped[-1] <= limits.good_error_share
+
+
+def _failed(trial: Trial) -> Flags:
+    """Joints (4,) that have a fault."""
+    return np.array([bool(verdict.faults) for verdict in trial.verdicts])
 
 
 def commission(options: CommissioningRequest, report: NotedProgress | None = None) -> CommissioningResult:
@@ -105,7 +110,7 @@ class _Commissioning:
 
     def _confirm(self, connect: Callable[[], ArmOnPort]) -> CommissioningResult:
         self.stage = "confirming"
-        best = confirm(self.trials, self.joints, connect)
+        best = confirm(self.trials, self.joints, connect, self.rounds[-1].learnt.fallback)
         if self.journal.get("end") is None:
             connect().keep(best.table)
             self.journal.note("end", {"best": best.name})
@@ -190,8 +195,8 @@ class _Commissioning:
         )
         trials.others |= learnt.others
         self.on_model = CheckOnModel.of(model, trials, foresight, self.options.seed, self.options.threads)
-        found = self._search_on_model(f"on-model-{tuner.number}", learnt.controllers, np.ones(JOINTS, dtype=bool))
-        return replace(learnt, controllers=found)
+        found = self._search_on_model(f"on-model-{tuner.number}", learnt.tuned, np.ones(JOINTS, dtype=bool))
+        return replace(learnt, controllers=found, promised=self.on_model.scores(np.stack([learnt.tuned, found])))
 
     def _search_on_model(self, name: str, begin: Controllers, vary: Flags) -> Controllers:
         """Controllers around others that the round's model prefers on the check; noted in the journal."""
@@ -230,8 +235,8 @@ class _Commissioning:
         return read_evidence(path)
 
     def _try(self, connect: Callable[[], ArmOnPort], learnt: learn.LearntController) -> None:
-        """Try a round's controllers on the arm; those that fail are searched again with what the arm showed."""
-        trials, rows = self.trials, learnt.controllers
+        """Try a round's controllers on the arm, and then others in the place of those that fail or follow poorly."""
+        trials, rows, self.improving = self.trials, learnt.controllers, True
         hoped: list[float] = []
         for number in range(1, self.options.trials + 1):
             self.trying = f", trial {number} of {self.options.trials} at most"
@@ -240,17 +245,59 @@ class _Commissioning:
             for one, row, verdict in zip(self.joints, rows, trial.verdicts, strict=True):
                 if verdict.known:
                     one.add(row, verdict)
-            hoped.append(sum(one.best.verdict.share * one.best.verdict.ranking_cost for one in self.joints))
-            failed = np.array([verdict.known and not verdict.passed for verdict in trial.verdicts])
-            if not failed.any() or is_enough(hoped, self.options.judging.rounds) or number == self.options.trials:
+            if trial.whole:
+                hoped.append(sum(one.best.verdict.share * one.best.verdict.ranking_cost for one in self.joints))
+            untried = self._poor(learnt) & ~self._have_tried(learnt.fallback)
+            if number == self.options.trials or (
+                trial.whole and not untried.any() and is_enough(hoped, self.options.judging.rounds)
+            ):
                 break
-            self.on_model = self.on_model.corrected(trial)
-            passed = np.array([verdict.passed for verdict in trial.verdicts])
-            begin = np.where(passed[:, None], self._best_rows(), rows)
-            rows = self._search_on_model(f"after-{trial.name}", begin, failed)
+            rows = self._improve(trial, learnt) if trial.whole else self._calm(trial, learnt)
             if any(np.array_equal(rows, known.rows) for known in trials.done):
                 break
         self.trying = ""
+
+    def _calm(self, trial: Trial, learnt: learn.LearntController) -> Controllers:
+        """The set after one that the arm did not play to its end: softer joints where they failed, else all of them."""
+        rows = trial.rows.copy()
+        failed = _failed(trial)
+        for joint in np.flatnonzero(failed if failed.any() else (rows != self.trials.before.rows).any(axis=1)).tolist():
+            rows[joint] = self._calmer(joint, learnt)
+        return rows
+
+    def _improve(self, trial: Trial, learnt: learn.LearntController) -> Controllers:
+        """The set after a whole trial. What failed is searched again with what the arm showed, and made softer where
+        that is known to hunt; what follows poorly gets its tuned controller, and then one more search.
+        """
+        failed, poor, tried = _failed(trial), self._poor(learnt), self._have_tried(learnt.fallback)
+        passed = np.array([verdict.passed for verdict in trial.verdicts])
+        begin = np.where(passed[:, None], self._best_rows(), trial.rows)
+        hunting = failed & np.array([len(one.hunted) > 1 for one in self.joints])
+        for joint in np.flatnonzero(hunting).tolist():
+            begin[joint] = self._calmer(joint, learnt)
+        simply = ~failed & poor & ~tried
+        begin[simply] = learnt.fallback[simply]
+        again = ~failed & poor & tried & self.improving
+        self.improving &= not again.any()
+        vary = (failed & ~hunting) | again
+        if not vary.any():
+            return begin
+        self.on_model = self.on_model.corrected(trial)
+        return self._search_on_model(f"after-{trial.name}", begin, vary)
+
+    def _calmer(self, joint: int, learnt: learn.LearntController) -> Row:
+        return self.joints[joint].calmer(learnt.fallback[joint], self.options.judging.rounds.softer_shares)
+
+    def _poor(self, learnt: learn.LearntController) -> Flags:
+        """Joints (4,) whose best follows much worse than the model promises."""
+        rounds = self.options.judging.rounds
+        most = np.maximum(rounds.poor_times * learnt.promised.min(axis=0), rounds.poor_error_share)
+        costs = np.array([one.best.verdict.ranking_cost for one in self.joints])
+        found: Flags = costs > most
+        return found
+
+    def _have_tried(self, rows: Controllers) -> Flags:
+        return np.array([one.has_tried(row) for one, row in zip(self.joints, rows, strict=True)])
 
     def _best_rows(self) -> Controllers:
         """Every joint's best so far, of whatever trial."""
@@ -260,8 +307,10 @@ class _Commissioning:
         return rows
 
     def _needs_another_round(self) -> bool:
-        """True where another round may help: a joint follows little better than before."""
-        return any(one.best.verdict.ranking_cost > self.options.judging.rounds.max_error_share for one in self.joints)
+        """True where another round may help: a joint follows little better than before, or poorly."""
+        rounds, poor = self.options.judging.rounds, self._poor(self.rounds[-1].learnt)
+        costs = np.array([one.best.verdict.ranking_cost for one in self.joints])
+        return bool((costs > np.where(poor, rounds.poor_again_share, rounds.max_error_share)).any())
 
     def _report(self, what: str, fraction: float, note: str = "") -> None:
         self.report(f"{self.stage}{self.trying}: {what}", fraction, note or self.tried)
