@@ -9,7 +9,7 @@ import pytest
 
 from greywhale.base.types import Floats
 from greywhale.identify.judge import CHANGED, FIT, Following, LogVerdict, doubts_of
-from greywhale.measure.swings_in_logs import Swings, describe_difference, swings_of
+from greywhale.measure.swings_in_logs import FIT_IT, PROVE, Swings, describe_difference, swings_of
 
 ROW_S = 5e-3
 TIME = np.arange(0.0, 20.0, ROW_S)
@@ -66,6 +66,10 @@ def test_sentences_name_the_joint_and_what_may_be_missing() -> None:
     assert "play" in missed[0]
     assert "the model hunts" in describe_difference("log3.csv", REST, hunts, (2,))[0]
     assert "but the model by 6.0 mrad" in describe_difference("log3.csv", hunts, small, (2,))[0]
+    for log, model in ((hunts, REST), (REST, hunts), (hunts, small)):
+        (unseen,), (fitted,) = (describe_difference("log3.csv", log, model, (2,), fitted=one) for one in (False, True))
+        assert FIT_IT in unseen
+        assert fitted.endswith(f": {PROVE}."), "to fit a log that is fitted leads in a circle"
     assert describe_difference("log3.csv", hunts, hunts, (0, 1, 2, 3)) == []
     near = replace(small, rms=(1e-3, 1e-3, 0.010, 1e-3), hunts=(False,) * 4)
     assert describe_difference("log3.csv", hunts, near, (2,)) == [], "it just does not hunt"

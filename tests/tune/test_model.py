@@ -119,7 +119,7 @@ def test_warnings_of_the_identification_go_along(tmp_path: Path) -> None:
         ({"log": [log_facts(), log_facts("validation", -0.5)]}, r"validation\.csv .*\(0\.015 against 0\.01 rad²\)"),
         (
             {"log": [log_facts(), log_facts("validation"), log_facts("validation, changed controller", -0.2)]},
-            r"\(0\.012 against 0\.01 rad²\), .* its controller, not the arm",
+            r"\(0\.012 against 0\.01 rad²\), .* its controller, not the arm; fit that log too",
         ),
         ({"covariance": None, "method": "paper"}, "how uncertain .*method paper"),
         ({"joints": (0, 1, 3)}, r"no motor moved joint 2 \(wrist pitch\) in its logs"),

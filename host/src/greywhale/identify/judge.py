@@ -22,7 +22,7 @@ from greywhale.identify.limits import IDENTIFICATION_LIMITS, JudgeLimits
 from greywhale.identify.space import Space
 from greywhale.identify.windows import WindowResidual
 from greywhale.measure.swings import smooth_motion
-from greywhale.measure.swings_in_logs import Swings, describe_difference, swings_of
+from greywhale.measure.swings_in_logs import FIT_IT, Swings, describe_difference, swings_of
 from greywhale.protocol.firmware import JOINTS, TICK_S
 from greywhale.protocol.table import ParameterTable
 
@@ -273,7 +273,11 @@ def doubts_of(verdicts: Sequence[LogVerdict], joints: Sequence[int]) -> tuple[st
         if verdict.following is None:
             continue
         sentences += describe_difference(
-            verdict.name, verdict.following.log_swings, verdict.following.model_swings, tuple(joints)
+            verdict.name,
+            verdict.following.log_swings,
+            verdict.following.model_swings,
+            tuple(joints),
+            fitted=verdict.role == FIT,
         )
         if verdict.role == CHANGED and own:
             sentences += _describe_unexplained(verdict, own, joints)
@@ -291,6 +295,6 @@ def _describe_unexplained(verdict: LogVerdict, own: Sequence[Following], joints:
                 f"{verdict.name}: joint {joint} ({JOINT_NAMES[joint]}) follows otherwise than the model by "
                 f"{1e3 * left:.0f} mrad rms, {100 * share:.0f} % of its tracking error, against {100 * usual:.0f} % "
                 "with the controller of the fitted log; what only a stiffer or softer controller shows is missing from "
-                "the model, such as play, load friction, lag or a sagging supply: fit that log too."
+                f"the model, such as play, load friction, lag or a sagging supply: {FIT_IT}."
             )
     return sentences

@@ -23,6 +23,9 @@ HUNTING_SHARE = 0.1
 HUNTING_RAD = 5e-3  # rms in a piece
 # A model swings as the log does within this factor.
 ALIKE = 2.0
+# What to do about a model that does not understand a log. Where the log is fitted already, no fit will mend it.
+FIT_IT = "fit that log too (greywhale identify takes several)"
+PROVE = "it is fitted to that log already, so let greywhale commission prove controllers on the arm itself"
 
 
 @dataclass(frozen=True)
@@ -65,9 +68,13 @@ def _frequency(pieces: Floats, row_s: float) -> float:
     return float(crossings / (2.0 * pieces.shape[0] * (pieces.shape[1] - 1) * row_s))
 
 
-def describe_difference(name: str, log: Swings, model: Swings, joints: tuple[int, ...]) -> list[str]:
-    """Sentences for joints whose hunting the model does not predict."""
+def describe_difference(
+    name: str, log: Swings, model: Swings, joints: tuple[int, ...], fitted: bool = False
+) -> list[str]:
+    """Sentences for joints whose hunting the model does not predict; `fitted`: though it was fitted to this log."""
     sentences = []
+    again = PROVE if fitted else FIT_IT
+    reversals = PROVE if fitted else f"record slow reversals with this controller and {FIT_IT}"
     for joint in joints:
         who = f"{name}: joint {joint} ({JOINT_NAMES[joint]})"
         seen, told = 1e3 * log.rms[joint], 1e3 * model.rms[joint]
@@ -76,18 +83,17 @@ def describe_difference(name: str, log: Swings, model: Swings, joints: tuple[int
         if log.hunts[joint] and not model.hunts[joint]:
             sentences.append(
                 f"{who} hunts by {seen:.1f} mrad rms at {log.frequency[joint]:.1f} Hz, but the model rests at "
-                f"{told:.1f} mrad; play, backlash or a delay may be missing from the model: record slow reversals "
-                "with this controller and fit that log too."
+                f"{told:.1f} mrad; play, backlash or a delay may be missing from the model: {reversals}."
             )
         elif model.hunts[joint] and not log.hunts[joint]:
             sentences.append(
                 f"{who} rests at {seen:.1f} mrad rms, but the model hunts by {told:.1f} mrad at "
                 f"{model.frequency[joint]:.1f} Hz; the model's gap or play may be too wide, or its friction too small: "
-                "fit that log too."
+                f"{again}."
             )
         elif log.hunts[joint]:
             sentences.append(
                 f"{who} hunts by {seen:.1f} mrad rms, but the model by {told:.1f} mrad; its gap, play or friction may "
-                "be wrong: fit that log too."
+                f"be wrong: {again}."
             )
     return sentences

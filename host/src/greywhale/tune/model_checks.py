@@ -15,11 +15,12 @@ from greywhale.arm.parameters import JOINT_NAMES
 from greywhale.base.errors import UserError
 from greywhale.base.types import Floats
 from greywhale.identify import sampled_plants
-from greywhale.identify.judge import FIT, LogVerdict, warnings_of
+from greywhale.identify.judge import CHANGED, FIT, LogVerdict, warnings_of
 from greywhale.identify.limits import JudgeLimits
 from greywhale.identify.uncertainty import EXCITATION
 from greywhale.loop import Experiment, human_reaches, plant_row
 from greywhale.loop.controllers import controllers_of
+from greywhale.measure.swings_in_logs import FIT_IT
 from greywhale.protocol import schema
 from greywhale.protocol.firmware import TICK_S
 from greywhale.protocol.schema import Board
@@ -149,11 +150,14 @@ def doubt_validation(facts: Identification, limits: JudgeLimits) -> Iterator[Dou
     if not poor:
         return
     worst = min(poor, key=lambda verdict: verdict.improvement)
+    remedy = "check supply, directions and controller files, record livelier motion and identify again"
+    if all(verdict.role == CHANGED for verdict in poor) and len(poor) < len(others):
+        remedy = f"{FIT_IT} and validate with another one of that controller"
     learnt = ", though on others it is not: it may have learnt its controller, not the arm"
     yield Doubt(
         f"on {worst.name} ({worst.role}) it is worse than the arm file it began with, by more than chance excuses "
         f"({sum(worst.model):.3g} against {sum(worst.white_box):.3g} rad²){learnt if len(poor) < len(others) else ''}",
-        "check supply, directions and controller files, record livelier motion and identify again",
+        remedy,
     )
 
 
