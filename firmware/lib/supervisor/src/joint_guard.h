@@ -1,4 +1,6 @@
 // What a joint's motor may get until the next look at the joint: all, a gentle push, or what holds it against gravity.
+// All comes back step by step. At once it would throw the arm after a hand that lets go, and beat against a hand that
+// gives way like a spring: pushed back by a motor that has all, held back, pressed away, and again.
 #pragma once
 #include <signal_chain/cosine.h>
 #include <stdint.h>
@@ -19,13 +21,20 @@ class JointGuard {
   void look(Supervisor& supervisor, uint8_t joint, JointSeen seen, const MotionLimits& limits, const Gravity& gravity) {
     seen.gravity_mv = static_cast<int16_t>(gravity_mv(joint, gravity) + supervisor.load_mv(joint));
     supervisor.look_at_joint(joint, seen, limits);
-    most_mv_[joint] = most_mv(supervisor.hold(joint), seen, limits);
+    const Hold hold = supervisor.hold(joint);
+    uint16_t& most = most_mv_[joint];
+    if (hold > Hold::free) most = held_mv(hold, seen, limits);
+    else if (hold == Hold::unknown || most >= all_mv) most = UINT16_MAX;
+    else most = static_cast<uint16_t>(most + comes_back_mv);
   }
   uint16_t most_mv(uint8_t joint) const { return most_mv_[joint]; }
 
  private:
   static int16_t gravity_mv(uint8_t joint, const Gravity& gravity);
-  static uint16_t most_mv(Hold hold, const JointSeen& seen, const MotionLimits& limits);
+  static uint16_t held_mv(Hold hold, const JointSeen& seen, const MotionLimits& limits);
+
+  static constexpr uint16_t all_mv = 32767;       // more than any supply
+  static constexpr uint16_t comes_back_mv = 128;  // a look, 32 V/s
 
   uint16_t most_mv_[joint_count] = {};
 };
@@ -42,8 +51,7 @@ inline int16_t JointGuard::gravity_mv(uint8_t joint, const Gravity& gravity) {
 
 // A joint that does not move is pushed with half as much again as starts it. One that is held back gets what holds it
 // against gravity, less half of what friction holds, and nothing with gravity.
-inline uint16_t JointGuard::most_mv(Hold hold, const JointSeen& seen, const MotionLimits& limits) {
-  if (hold <= Hold::free) return UINT16_MAX;
+inline uint16_t JointGuard::held_mv(Hold hold, const JointSeen& seen, const MotionLimits& limits) {
   const uint8_t breakaway = limits.travel.breakaway;
   int32_t mv = seen.error < 0 ? -seen.gravity_mv : seen.gravity_mv;
   if (hold == Hold::back) mv -= breakaway * 50;

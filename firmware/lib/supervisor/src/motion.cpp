@@ -13,7 +13,6 @@ constexpr uint16_t turns = 8;           // q12 rad a look: noise moves a reading
 constexpr uint8_t noise = 2;            // 1/1024 rad a look, of a speed
 constexpr int16_t play = 33;            // q12 rad: noise moves a reading less to either side, 8 mrad
 constexpr int16_t most_way = 8191;      // q14 rad a look: four of these fit into 16 bits
-constexpr int16_t brakes = 20;          // q14 rad a look, 0.3 rad/s: a joint that moves faster is braked by its voltage
 constexpr uint16_t try_from = 4915;     // q14 rad missing, 0.3 rad: from here on the joint is pushed gently
 constexpr uint16_t gentle_looks = 16;   // after so many it is held back
 constexpr uint8_t late_looks = 6;       // of a reading behind its joint: noise, play and smoothing
@@ -57,7 +56,7 @@ __attribute__((noinline)) MotionFault Motion::look_at(Joint& own, const JointSee
   if (limits.speed != 0 && size_of(moved) > way_of_look(limits.speed)) return MotionFault::speed;
   const Push push = push_of(seen, limits);
   const bool back = goes_back(own, moved, push);
-  if (limits.runaway != 0 && size_of(own.back) > limits.runaway * 32u) return MotionFault::runaway;
+  if (runs_away(own, limits.runaway)) return MotionFault::runaway;
   if (limits.stall == 0) return MotionFault::none;
   learn(own, push);
   expect(own, push, limits.travel, back);
@@ -85,10 +84,18 @@ inline bool Motion::goes_back(Joint& joint, int16_t moved, const Push& push) {
   if (way > turns && (!against || (moved > 0) != (joint.back > 0))) joint.back = joint.peak = 0;
   if (!against || size_of(push.left_mv) < (push.starts_mv < pushes_mv ? push.starts_mv : pushes_mv)) return false;
   const auto speed = static_cast<uint16_t>(way / 4u);
+  if (joint.peak == 0) joint.brought = static_cast<uint8_t>(speed > 255 ? 255 : speed);
   if (speed > joint.peak) joint.peak = speed > 255 ? uint8_t{255} : static_cast<uint8_t>(speed);
   if (speed + joint.peak / 16u + noise < joint.peak) return false;
   if (way >= static_cast<uint16_t>(push.way) / 32u) joint.back = static_cast<int16_t>(joint.back + moved);
   return true;
+}
+
+// A joint that was fast already when its voltage came to be against it may go twice the way.
+inline bool Motion::runs_away(const Joint& joint, uint8_t limit) {
+  auto most = static_cast<uint16_t>(limit * 32u);
+  if (joint.peak - joint.brought < joint.brought / 2) most = static_cast<uint16_t>(2u * most);
+  return limit != 0 && size_of(joint.back) > most;
 }
 
 // The place follows the reading as far as that leaves it by more than its noise. The way, in q14 rad.
@@ -132,7 +139,8 @@ inline void Motion::expect(Joint& joint, const Push& push, const Travel& travel,
 inline MotionFault Motion::hold(Joint& joint, int16_t given, int16_t error, uint8_t time) {
   const uint16_t missing = size_of(joint.missing);
   const int16_t speed = joint.missing < 0 ? static_cast<int16_t>(-joint.speed) : joint.speed;
-  const bool wanted = (error > 0) == (joint.missing > 0) && speed > -brakes;
+  // A joint that goes away from its reference is braked by its voltage.
+  const bool wanted = (error > 0) == (joint.missing > 0) && speed > -moves;
   const auto way = static_cast<uint16_t>(given);
   uint16_t from = try_from;
   if (joint.hold != Hold::back)

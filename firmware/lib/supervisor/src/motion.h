@@ -5,7 +5,10 @@
 // speed:   the reading has moved faster than the limit. No joint does; a wiper, a wire or a converter does.
 // runaway: the joint moves against its voltage for longer than the limit, and does not slow down. A joint that
 //          overshoots is braked by such a voltage. So a way counts only as long as the speed is within a sixteenth of
-//          the highest since the joint began to move against its voltage.
+//          the highest since the joint began to move against its voltage. A motor the wrong way round starts that
+//          motion itself, from rest. Momentum, a neighbour's pull, a spring and a weight do not: there the joint is
+//          fast already when the voltage comes to be against it. So the way may be twice the limit as long as the
+//          speed is less than half as much again as it was then.
 // held:    the voltage should have moved the joint, and the reading does not show it. A hand or a table may be in its
 //          way, or the reading lies. Neither can be told from the other, so the joint is pushed gently for 64 ms, and
 //          then held back: its motor gets no more than holds it against gravity, until the reading moves or the
@@ -76,12 +79,20 @@ class Motion {
   }
   Hold hold(uint8_t joint) const { return joints_[joint].hold; }
   int16_t load_mv(uint8_t joint) const { return joints_[joint].load_mv; }
+  // Whether the joint goes toward its reference, as its motor can.
+  bool comes_nearer(uint8_t joint, int16_t error) const {
+    const int16_t speed = joints_[joint].speed;
+    return error < 0 ? speed < -moves : speed > moves;
+  }
 
  private:
+  static constexpr int16_t moves = 20;  // q14 rad a look, 0.3 rad/s
+
   struct Joint {
-    int16_t last;  // q12 rad, at the last look
-    int16_t back;  // q12 rad, the way against the voltage, without a turn
-    uint8_t peak;  // speed on that way, 1/1024 rad a look
+    int16_t last;     // q12 rad, at the last look
+    int16_t back;     // q12 rad, the way against the voltage, without a turn
+    uint8_t peak;     // speed on that way, 1/1024 rad a look
+    uint8_t brought;  // speed at its beginning
     Hold hold;
     int16_t place;    // q12 rad, the reading without its noise
     int16_t speed;    // q14 rad a look, of the place, smoothed
@@ -89,7 +100,7 @@ class Motion {
     int16_t load_mv;  // carried beyond the gravity that is known
     uint16_t waited;  // looks held back
   };
-  static_assert(sizeof(int) > 2 || sizeof(Joint) == 16, "a Nano's memory is short");
+  static_assert(sizeof(int) > 2 || sizeof(Joint) == 17, "a Nano's memory is short");
   struct Push {
     int16_t left_mv;     // beyond what gravity takes
     uint16_t starts_mv;  // breakaway
@@ -99,6 +110,7 @@ class Motion {
   MotionFault look_at(Joint& own, const JointSeen& seen, const MotionLimits& limits);
   static Push push_of(const JointSeen& seen, const MotionLimits& limits);
   static bool goes_back(Joint& joint, int16_t moved, const Push& push);
+  static bool runs_away(const Joint& joint, uint8_t limit);
   static int16_t follow(Joint& joint);
   static void learn(Joint& joint, const Push& push);
   void expect(Joint& joint, const Push& push, const Travel& travel, bool back);

@@ -114,23 +114,23 @@ void Supervisor::look_at_leader(uint16_t number, int16_t reading, bool leads, ui
 
 void Supervisor::watch_joint(uint8_t joint, const JointSeen& seen, const MotionLimits& limits) {
   const auto reference = static_cast<int16_t>(seen.follower + seen.error);
-  switch (motion_.look(joint, seen, limits)) {
-    case MotionFault::speed: return raise(Fault::speed, joint);
-    case MotionFault::runaway: return raise(Fault::runaway, joint);
-    case MotionFault::stalled: return raise(Fault::stalled, joint);
-    case MotionFault::none: break;
-  }
-  if (is_lost(joint, size_of(seen.error))) return raise(Fault::tracking, joint);
-  if (unrest_.look(joint, reference, seen.error)) raise(Fault::unrest, joint);
+  const MotionFault fault = motion_.look(joint, seen, limits);
+  if (fault == MotionFault::stalled) return raise(Fault::stalled, joint);
+  // A joint whose swings grow comes to be too fast, or goes far against its voltage, before they have lasted.
+  if (fault != MotionFault::none && unrest_.swings(joint)) return raise(Fault::unrest, joint);
+  if (fault == MotionFault::speed) return raise(Fault::speed, joint);
+  if (fault == MotionFault::runaway) return raise(Fault::runaway, joint);
+  if (is_lost(joint, seen.error)) return raise(Fault::tracking, joint);
+  if (unrest_.look(joint, reference, seen.error)) return raise(Fault::unrest, joint);
+  if (motion_.hold(joint) != Hold::free) unrest_.forget(joint);
 }
 
-// A look comes every four ticks.
-bool Supervisor::is_lost(uint8_t joint, uint16_t distance) {
+// A look comes every four ticks. A feeble joint on its way is not lost.
+bool Supervisor::is_lost(uint8_t joint, int16_t error) {
   uint16_t& lost = lost_ms_[joint];
-  if (distance <= limits_.tracking_limit) {
-    lost = 0;
-    return false;
-  }
+  const bool near = size_of(error) <= limits_.tracking_limit;
+  if (near) lost = 0;
+  if (near || motion_.comes_nearer(joint, error)) return false;
   lost = static_cast<uint16_t>(lost + joint_count);
   return lost >= limits_.tracking_ms;
 }

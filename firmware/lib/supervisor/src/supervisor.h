@@ -96,14 +96,14 @@ class Supervisor {
   void forget_fault();
   void raise_always(Fault fault);
   void watch(const Observation& seen);
-  bool is_lost(uint8_t joint, uint16_t distance);
+  bool is_lost(uint8_t joint, int16_t error);
   void watch_joint(uint8_t joint, const JointSeen& seen, const MotionLimits& limits);
 
   static constexpr uint8_t boot_ticks = 20;  // meanwhile the filters settle and bad pots are found
 
   Limits limits_ = {0, 0, 0, 0};  // a tracking limit of UINT16_MAX: no distance is beyond it
   Rails rails_;
-  uint16_t lost_ms_[joint_count] = {};  // time beyond the tracking limit
+  uint16_t lost_ms_[joint_count] = {};  // time beyond the tracking limit without coming nearer
   signal_chain::SoftStart soft_start_;
   Overruns overruns_;
   Unrest unrest_;

@@ -20,10 +20,12 @@ void Unrest::configure(const UnrestLimits& limits) {
 }
 
 void Unrest::forget() {
-  for (Joint& joint : joints_) {
-    joint.slots = 0;
-    joint.largest = joint.before = 0;
-  }
+  for (uint8_t joint = 0; joint < joint_count; ++joint) forget(joint);
+}
+
+void Unrest::forget(uint8_t joint) {
+  joints_[joint].slots = 0;
+  joints_[joint].largest = joints_[joint].before = 0;
 }
 
 bool Unrest::look(uint8_t joint, int16_t reference, int16_t error) {

@@ -24,8 +24,12 @@ class Unrest {
 
   void configure(const UnrestLimits& limits);
   void forget();
+  // Somebody or something holds this joint: what swings is not its controller's doing.
+  void forget(uint8_t joint);
   // One look at a joint, the next joint in each tick. Reference and error are in q12 rad. True when it is restless.
   bool look(uint8_t joint, int16_t reference, int16_t error);
+  // Whether it has swung for some slots, though not yet for long enough.
+  bool swings(uint8_t joint) const { return joints_[joint].slots >= some_slots; }
 
  private:
   struct Joint {
@@ -39,6 +43,7 @@ class Unrest {
   };
   static_assert(sizeof(int) > 2 || sizeof(Joint) == 8, "a Nano's memory is short");
   static constexpr uint8_t looks_per_second = 250;  // at a joint
+  static constexpr uint8_t some_slots = 2;
 
   void follow(Joint& joint, int16_t error) const;
   static void end_slot(Joint& joint);

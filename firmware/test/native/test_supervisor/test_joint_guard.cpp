@@ -25,6 +25,7 @@ struct Stuck {
     supervisor.set_limits({3277, 0, 1, 100});
     supervisor.begin(false, true);
     for (int i = 0; i < 20; ++i) supervisor.tick({});
+    for (std::uint8_t joint = 0; joint < joint_count; ++joint) look(joint, 1, 0, 0);  // as long as the motors are off
     REQUIRE(supervisor.enable(0, {}, {}).refusal == NackCode::none);
   }
 
@@ -58,6 +59,17 @@ TEST_CASE("a stuck joint is pushed with half as much again as starts it, then ge
     CHECK(may == doctest::Approx(1.5 * 1.2));
     CHECK(arm.look(joint, 40, 8, 1) == 0);
   }
+}
+
+TEST_CASE("a joint that is let go gets all back step by step, after a stop, too") {
+  Stuck arm(0, 0);
+  REQUIRE(arm.look(0, 400, 8, 1) == 0);
+  CHECK(arm.look(0, 25, 0, -1) == doctest::Approx(25 * 0.128));  // the reference has come back
+  CHECK(std::isinf(arm.look(0, 250, 0, -1)));
+  REQUIRE(arm.look(0, 400, 8, 1) == 0);
+  arm.supervisor.stop();
+  REQUIRE(arm.supervisor.enable(0, {}, {}).refusal == NackCode::none);
+  CHECK(arm.look(0, 25, 0, -1) == doctest::Approx(25 * 0.128));
 }
 
 TEST_CASE("a joint that is held back gets what gravity takes at its pitch, up, and nothing down") {

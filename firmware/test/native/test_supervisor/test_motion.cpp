@@ -115,6 +115,22 @@ TEST_CASE("a joint that its voltage brakes is proper, from any speed, and keeps 
   }
 }
 
+TEST_CASE("a joint that is fast already when its voltage comes to be against it may go twice the way, not farther") {
+  for (const double speed : {2.0, 8.0}) {
+    Reading joint;
+    const Course angle = [speed](double s) { return speed * s; };
+    CHECK(joint.run(0, 1, angle, [](double s) { return s < 0.1 ? 6.0 : -6.0; }) ==
+          doctest::Approx(0.1 + 2 * runaway_limit / speed).epsilon(0.1));
+    CHECK(joint.fault == MotionFault::runaway);
+  }
+}
+
+TEST_CASE("a spring that throws a joint to and fro against its voltage is no runaway") {
+  const auto swing = [](double s) { return 0.35 * std::sin(55 * s); };
+  Reading joint;
+  CHECK(joint.run(0, 2, swing, [](double s) { return std::sin(55 * s + 0.7) > 0 ? -10.0 : 10.0; }) < 0);
+}
+
 TEST_CASE("a joint that vibrates against its voltage goes no way") {
   const auto swing = [](double s) { return 0.1 * std::sin(60 * s); };
   CHECK(Reading().run(0, 20, swing, [](double s) { return std::cos(60 * s) > 0 ? -6.0 : 6.0; }) < 0);
@@ -159,6 +175,15 @@ TEST_CASE("what holds a load, moves slowly or starts late is not held back") {
   slow.run(0, 10, [](double s) { return 0.4 * s - 2; }, always(5));
   late.run(0, 1, [](double s) { return s < 0.02 ? 0 : 6 * (s - 0.02); }, always(15));
   for (const Reading* joint : {&holds, &slow, &late}) CHECK(joint->held_s < 0);
+}
+
+TEST_CASE("a joint that comes nearer to its reference is told from one that stands or goes away") {
+  for (const double speed : {0.6, 0.0, -0.6}) {
+    Reading joint;
+    joint.run(0, 0.3, [speed](double s) { return speed * s; }, always(2), 1);
+    CHECK(joint.motion.comes_nearer(2, 4096) == (speed > 0));
+    CHECK(joint.motion.comes_nearer(2, -4096) == (speed < 0));
+  }
 }
 
 TEST_CASE("a joint that gives way while it is pushed carries more than is known, and less once it rests with less") {

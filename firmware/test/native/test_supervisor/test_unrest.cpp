@@ -141,6 +141,35 @@ TEST_CASE("property: a leader alone raises nothing, whatever it does, when the f
   }
 }
 
+TEST_CASE("swings that grow until they are too fast are unrest, and a reading that jumps once is not") {
+  const MotionLimits watched = {25, 40, 32, 80, {32, 25, 0}};
+  for (const bool swings : {true, false}) {
+    Arm arm;
+    for (; arm.fault() == Fault::none && arm.now < 2000; ++arm.now) {
+      const double s = arm.now / 1000.0, error = swings ? 0.02 * std::exp(4 * s) * std::sin(55 * s) : s < 0.8 ? 0 : 0.2;
+      const auto apart = static_cast<std::int16_t>(std::lround(q12 * error));
+      const auto joint = static_cast<std::uint8_t>(arm.now % 4);
+      arm.look_at_joint(joint, {static_cast<std::int16_t>(-apart), apart, 0, 0}, watched);
+    }
+    CHECK(arm.now < 1000);
+    CHECK(arm.fault() == (swings ? Fault::unrest : Fault::speed));
+  }
+}
+
+TEST_CASE("what swings while the joint is held back is not its controller's doing") {
+  const MotionLimits watched = {0, 0, 32, 80, {32, 25, 0}};
+  for (const int volts_mv : {8000, 1000}) {
+    Arm arm;
+    for (; arm.fault() == Fault::none && arm.now < 4000; ++arm.now) {
+      const auto apart = static_cast<std::int16_t>(std::lround(q12 * (0.5 + swing(0.02, 5)(arm.now / 1000.0))));
+      const auto joint = static_cast<std::uint8_t>(arm.now % 4);
+      const auto mv = static_cast<std::int16_t>(volts_mv);
+      arm.look_at_joint(joint, {static_cast<std::int16_t>(-apart), apart, mv, 0}, watched);
+    }
+    CHECK(arm.motors_on() == (volts_mv > 3200));
+  }
+}
+
 TEST_CASE("the other joints' leaders count too, and the time begins when the last of them rests") {
   Arm arm;
   for (; arm.now < 6000; ++arm.now) {

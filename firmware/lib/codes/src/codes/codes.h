@@ -37,7 +37,7 @@ enum class Fault : uint8_t {
   unrest = 8,  // a follower swung to and fro although the leader was still
   estop = 9,  // the emergency stop was pressed
   speed = 10,  // a follower's potentiometer jumped, or turned faster than any joint does
-  runaway = 11,  // a follower moved against its motor's voltage, faster and faster
+  runaway = 11,  // a follower moved against its motor's voltage
   stalled = 12,  // a motor had voltage, but its follower did not move
   memory = 13,  // the running parameters had changed in the board's memory
   leader_jump = 14,  // a leader's potentiometer jumped

@@ -57,7 +57,7 @@ struct __attribute__((packed)) Table {
   uint16_t enable_limit;  // largest distance between leader and follower at which enable works [1/4096 rad]
   uint16_t soft_start_ms;  // time in which the voltage limit rises from 0 to the supply after enable [ms]
   uint16_t tracking_limit;  // distance between leader and follower that counts as lost; 0 turns the check off [1/4096 rad]
-  uint16_t tracking_ms;  // time beyond tracking_limit that becomes a fault [ms]
+  uint16_t tracking_ms;  // time beyond tracking_limit, without coming nearer, that becomes a fault [ms]
   uint8_t filter_shift;  // potentiometer low-pass: new = old + (sample - old) / 2^filter_shift each tick; 0 is no filter
   uint8_t rail_counts;  // a potentiometer this close to 0 or 1023 is a fault; 0 turns the check off [10-bit counts]
   JointParameters joint[4];
