@@ -35,7 +35,7 @@ def find_default(task: IdentificationRequest) -> FoundModel:
     task.report("judging the model", 0.0)
     windows = WindowResidual(prepared, arm, joints, longest_step=FINE_STEP_S)
     windows.settle(best.plant, best.zero)
-    sure = uncertainty(windows, best.space, best.x, joints)
+    sure = uncertainty(windows, best.space, best.x, joints, links=True)
     if search.complete and search.loops:
         scatter = scatter_of_fits(
             prepared,
@@ -56,7 +56,7 @@ def find_default(task: IdentificationRequest) -> FoundModel:
         joints=joints,
         order=best.order,
         orders=tuple((one.order, float(one.held_out or 0.0)) for one in search.tried),
-        combinations=combinations(best.space, best.x, sure.covariance, sure.limits),
+        combinations=combinations(best.space, best.x, sure.whole, sure.limits),
         rivals=tuple(Rival(one.order, float(one.held_out or 0.0), one.plant) for one in search.rivals()),
         estimates=estimates_of(best.space, best.x, sure.deviations),
         covariance=sure.covariance,

@@ -6,6 +6,7 @@ they run over windows under the logged voltages.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Annotated, NotRequired, TypedDict
@@ -46,6 +47,7 @@ class VerdictFacts(FollowingFacts):
     measure: Annotated[str, ("enum", [CLOSED_LOOP, WINDOWS])]  # how model and log were compared
     white_box_mse_rad2: PerJoint[float]  # your arm's error; 0 for joints that were not identified
     model_mse_rad2: PerJoint[float]
+    model_rms_mrad: PerJoint[float]  # the same error as an angle
     improvement: float  # 1 is perfect, 0 no better than your arm
     chance_rad2: float  # by how much the model may be further from the log than your arm without being worse
 
@@ -120,6 +122,11 @@ class LogVerdict:
         return 1.0 - sum(self.model) / before if before > 0.0 else 0.0
 
     @property
+    def rms_mrad(self) -> tuple[float, ...]:
+        """By how much the model's angles are off, mrad rms, per joint."""
+        return tuple(1e3 * math.sqrt(one) for one in self.model)
+
+    @property
     def is_worse(self) -> bool:
         """True where the model is further from the log than the white box is, by more than chance excuses."""
         return self.excess > self._excused
@@ -164,6 +171,7 @@ class LogVerdict:
             "measure": self.measure,
             "white_box_mse_rad2": list(self.white_box),
             "model_mse_rad2": list(self.model),
+            "model_rms_mrad": list(self.rms_mrad),
             "improvement": self.improvement,
             "chance_rad2": self.chance,
             **following,

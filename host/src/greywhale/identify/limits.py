@@ -166,19 +166,23 @@ class UncertaintyLimits:
     sharper: float = limit(
         3.0, "times as certain", "a combination of two numbers is stated if it is so much surer than either"
     )
+    mass_share: float = limit(
+        0.1, "of a link's mass", "an arm file's may be off by this: weighed with or without cables and screws"
+    )
+    length_share: float = limit(0.02, "of a link's length", "an arm file's may be off by this: 3 mm of 15 cm")
     start_sigmas: float = limit(2.0, "standard deviations", "a fit of a simulated log starts so far away")
     shape_logs: float = limit(3.0, "logs", "the formula's shape counts like so many fits of simulated logs")
     systematic: tuple[tuple[str, float], ...] = limit(
         (
             ("inertia", 0.015),
-            ("damping", 0.002),
-            ("coulomb", 0.008),
+            ("damping", 0.003),
+            ("coulomb", 0.015),
             ("breakaway", 0.03),
             ("stribeck", 0.3),
             ("gap", 2e-4),
             ("drag", 2.0),
             ("teeth", 0.7),
-            ("play", 6e-4),
+            ("play", 1.1e-3),
         ),
         "standard deviations of the searched numbers",
         "fits are off beyond their scatter: those of simulated logs begin near the truth, the real one ends in one of "

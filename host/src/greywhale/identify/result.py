@@ -230,7 +230,13 @@ class IdentificationResult:
 def _table(verdict: LogVerdict, begun: str, joints: Joints) -> Table:
     columns = (Column("MSE", "rad²", 12, left=True), Column(begun, width=12), Column("model", width=12))
     before, after = sum(verdict.white_box), sum(verdict.model)
-    rows = [Row((f"joint {one}", f"{verdict.white_box[one]:.3g}", f"{verdict.model[one]:.3g}")) for one in joints]
+    rows = [
+        Row(
+            (f"joint {one}", f"{verdict.white_box[one]:.3g}", f"{verdict.model[one]:.3g}"),
+            remark=f"off by {verdict.rms_mrad[one]:.2g} mrad rms",
+        )
+        for one in joints
+    ]
     total = Row(("all joints", f"{before:.3g}", f"{after:.3g}"), remark=_comparison(verdict, begun))
     return Table(columns, [*rows, total], f"{verdict.name} ({verdict.role}; {verdict.measure})")
 

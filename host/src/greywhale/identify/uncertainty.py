@@ -1,7 +1,9 @@
 """The uncertainty of each parameter, the numbers that the logs leave open, and the motion that would settle them.
 
 The covariance comes from the sandwich formula with the windows as clusters. A model's mistakes last for many readings
-in a row. If each reading counted as new evidence, every deviation would be far too small.
+in a row. If each reading counted as new evidence, every deviation would be far too small. The deviations that people
+read also hold the doubt about the arm file's masses and lengths. The covariance does not: arms that are drawn from it
+have the arm file's links.
 """
 
 from __future__ import annotations
@@ -11,7 +13,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from greywhale.arm import ArmParameters
 from greywhale.arm.parameters import JOINT_NAMES
+from greywhale.arm.plants import plant_row
 from greywhale.base.types import Floats
 from greywhale.identify.limits import IDENTIFICATION_LIMITS, UncertaintyLimits
 from greywhale.identify.space import KINDS, WHOLE_ARM, Parameter, Space
@@ -46,9 +50,12 @@ EXCITATION = {
 
 @dataclass(frozen=True)
 class Uncertainty:
-    """Covariance of the searched numbers, condition number of the information, sentences on what is open."""
+    """Covariance of the searched numbers, what masses and lengths add to it, condition number of the information,
+    sentences on what is open.
+    """
 
     covariance: Floats
+    links: Floats  # a covariance, too
     condition: float
     open: tuple[str, ...]
     limits: UncertaintyLimits = IDENTIFICATION_LIMITS.uncertainty
@@ -56,16 +63,26 @@ class Uncertainty:
     @property
     def deviations(self) -> Floats:
         """Standard deviations of the searched numbers."""
-        return np.sqrt(np.diag(self.covariance))
+        return np.sqrt(np.diag(self.whole))
+
+    @property
+    def whole(self) -> Floats:
+        """The covariance with the doubt about masses and lengths."""
+        return self.covariance + self.links
 
     def widened(self, covariance: Floats, space: Space, x: Floats, joints: Sequence[int]) -> Uncertainty:
         """Return the uncertainty with another covariance."""
-        found = tuple(_describe_open(space, x, np.sqrt(np.diag(covariance)), joints, self.limits))
-        return replace(self, covariance=covariance, open=found)
+        wider = replace(self, covariance=covariance)
+        return replace(wider, open=tuple(_describe_open(space, x, wider.deviations, joints, self.limits)))
 
 
-def uncertainty(residual: WindowResidual, space: Space, x: Floats, joints: Sequence[int]) -> Uncertainty:
-    """Evaluate at a found point. Numbers that the readings leave open are as uncertain as the user's arm file."""
+def uncertainty(
+    residual: WindowResidual, space: Space, x: Floats, joints: Sequence[int], links: bool = False
+) -> Uncertainty:
+    """Evaluate at a found point. Numbers that the readings leave open are as uncertain as the user's arm file.
+
+    Where nobody reads the deviations, masses and lengths need not be looked at.
+    """
     # Wide differences: a joint that hunts makes the residual rough, and roughness is no information.
     limits = residual.limits.uncertainty
     steps = limits.wide_difference * space.doubts()
@@ -83,8 +100,35 @@ def uncertainty(residual: WindowResidual, space: Space, x: Floats, joints: Seque
     gradients = np.zeros((residual.clusters.max() + 1, len(space)))
     np.add.at(gradients, residual.clusters, jacobian * numbers[0][:, None])
     covariance = _combine(information, gradients.T @ gradients, np.diag(space.doubts() ** -2.0))
-    found = _describe_open(space, x, np.sqrt(np.diag(covariance)), joints, limits)
-    return Uncertainty(covariance, condition, tuple(found), limits)
+    by_links = np.zeros_like(covariance)
+    if links:
+        by_links = _covariance_by_links(residual, space, x, numbers[0], jacobian, limits)
+    found = _describe_open(space, x, np.sqrt(np.diag(covariance + by_links)), joints, limits)
+    return Uncertainty(covariance, by_links, condition, tuple(found), limits)
+
+
+def _covariance_by_links(
+    residual: WindowResidual, space: Space, x: Floats, numbers: Floats, jacobian: Floats, limits: UncertaintyLimits
+) -> Floats:
+    """The covariance of the searched numbers that comes from masses and lengths: where a fit with others would end."""
+    fit = np.linalg.inv(jacobian.T @ jacobian + np.diag(space.doubts() ** -2.0))
+    others = [replace(space, arm=arm, base=plant_row(arm)) for arm in _with_other_links(space.arm, limits)]
+    moved = np.array([fit @ jacobian.T @ (residual(other, x[None])[0] - numbers) for other in others])
+    covariance: Floats = moved.T @ moved
+    return covariance
+
+
+def _with_other_links(arm: ArmParameters, limits: UncertaintyLimits) -> list[ArmParameters]:
+    """The arm with one mass, or one length, off by a standard deviation of numbers that are anywhere in their range."""
+    heavier, longer = (1.0 + share / np.sqrt(3.0) for share in (limits.mass_share, limits.length_share))
+    arms = []
+    for number, link in enumerate(arm.link):
+        for mass, length in ((heavier, 1.0), (1.0, longer)):
+            inertia = {key: mass * length**2 * value for key, value in link.inertia.model_dump().items()}
+            sizes = {"mass": mass * link.mass, "length": length * link.length, "centre": length * link.centre}
+            other = link.model_copy(update={**sizes, "inertia": link.inertia.model_copy(update=inertia)})
+            arms.append(arm.model_copy(update={"link": (*arm.link[:number], other, *arm.link[number + 1 :])}))
+    return arms
 
 
 def _combine(information: Floats, scatter: Floats, nominal: Floats) -> Floats:

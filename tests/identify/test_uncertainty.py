@@ -1,0 +1,28 @@
+"""Deviations that people read hold what the readings leave open, and what the arm file's masses and lengths may be off."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from greywhale.arm import ArmParameters
+from greywhale.identify.data import prepare
+from greywhale.identify.limits import IDENTIFICATION_LIMITS
+from greywhale.identify.space import MOTOR, PITCH, Space
+from greywhale.identify.uncertainty import uncertainty
+from greywhale.identify.windows import WindowResidual
+from tools.support.recordings import Recorded
+
+
+def test_a_torque_is_no_surer_than_the_masses_that_it_lifts(recorded: Recorded, hidden: ArmParameters) -> None:
+    """Alpha of a pitch joint follows the weight; what is measured in volts and seconds does not."""
+    space = Space.of(hidden, (*MOTOR, "coulomb"), range(4))
+    residual = WindowResidual([prepare(recorded.fit, 1)], hidden, range(4), every=8)
+    sure = uncertainty(residual, space, space.start(), range(4), links=True)
+    plain = uncertainty(residual, space, space.start(), range(4))
+    np.testing.assert_array_equal(sure.covariance, plain.covariance)
+    by_links = dict(zip(space.names, np.sqrt(np.diag(sure.links)), strict=True))
+    mass = IDENTIFICATION_LIMITS.uncertainty.mass_share / np.sqrt(3.0)
+    for joint in PITCH:
+        assert 0.5 * mass < by_links[f"joint{joint}.alpha"] < 1.5 * mass
+        assert by_links[f"joint{joint}.damping"] < 0.5 * mass
+    assert np.all(sure.deviations >= plain.deviations)
