@@ -119,5 +119,11 @@ def test_poses_keep_to_the_room() -> None:
     motion = poses(LOW, HIGH, 2)
     assert np.all(motion.angles >= LOW)
     assert np.all(motion.angles <= HIGH)
+    narrow = poses(LOW, LOW + 0.2, 2)  # the narrowest that `record` takes
+    assert np.all(narrow.angles >= LOW - 1e-12)
+    assert np.all(narrow.angles <= LOW + 0.2 + 1e-12)
+    time = np.arange(0.0, narrow.duration_s, STEP_S)
+    found = repeatability(log_of(time, narrow.at(time), narrow.at(time)))
+    assert all(place.variation is not None for pose in found.poses for place in pose.joints.values())
     still = poses(np.array([-1.0, 0.0, -1.0, 0.0]), np.array([1.0, 0.0, 1.0, 0.0]), 2)  # two joints in use
     assert np.all(still.angles[:, [1, 3]] == 0.0)

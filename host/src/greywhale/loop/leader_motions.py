@@ -22,9 +22,9 @@ TREMOR_RAD = 0.002  # root mean square
 # The edge of a step (s), and how many times as fast as on average such a path is in its middle.
 EDGE_S = 0.04
 MINIMUM_JERK_PEAK = 1.875
-# Poses: how far out they are, as a share of half the range; how far from a pose each side's approach begins (rad), at
-# most this share of half the range; how long a move to it takes (s), or longer where its peak would be quicker (rad/s).
-POSE_SHARE, APPROACH_RAD, APPROACH_SHARE = 0.5, 0.2, 0.4
+# Poses: how far out they are at most, as a share of half the range; how far from a pose each side's approach begins, as
+# such a share within these (rad); how long a move to it takes (s), or longer where its peak would be quicker (rad/s).
+POSE_SHARE, APPROACH_SHARE, APPROACH_RAD = 0.5, 0.4, (0.08, 0.2)
 APPROACH_S, POSES_RAD_S = 0.4, 2.0
 TURN_S, VISIT_S = 0.1, 1.0  # a turn before an approach is no rest; a visit lets the follower arrive, and then measures
 # The middle, and four corners in which shoulder and wrist lean opposite ways, so that the hand stays about level.
@@ -107,11 +107,12 @@ def poses(low: Floats, high: Floats, visits: int) -> Trajectory:
     by all joints at once: a round through all poses after the other, as ISO 9283 has it.
     """
     middle, half = 0.5 * (low + high), 0.5 * (high - low)
-    approach = np.minimum(APPROACH_RAD, APPROACH_SHARE * half)
+    approach = np.minimum(np.clip(APPROACH_SHARE * half, *APPROACH_RAD), half)
+    out = np.minimum(POSE_SHARE * half, half - approach)
     each_round = [
         place
         for corner in POSES
-        for pose in [middle + POSE_SHARE * half * corner]
+        for pose in [middle + out * corner]
         for place in (pose - approach, pose, pose + approach, pose)
     ]
     holds = [TURN_S, VISIT_S] * (len(each_round) // 2 * visits)
