@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -18,6 +19,7 @@ from greywhale.arm import ArmParameters
 from greywhale.arm.parameters import with_usual_noise
 from greywhale.arm.plants import plant_row
 from greywhale.base.errors import UserError
+from greywhale.base.study.side_job import side_jobs
 from greywhale.base.types import show_no_progress
 from greywhale.board.hunting_stop import Hunting, HuntingStop
 from greywhale.board.stream import Received
@@ -119,6 +121,7 @@ def in_no_time(rig: SimulatedRig, patch: pytest.MonkeyPatch) -> None:
         return rows
 
     patch.setattr(run, "connected", rig.connected)
+    patch.setattr(run, "side_jobs", partial(side_jobs, here=True))  # another process knows of no patch
     patch.setattr(learn, "tune", tune)
     patch.setattr(CheckOnModel, "search", search)
     steps = multi_steps()

@@ -11,7 +11,7 @@ from greywhale.adapt.live_model import LiveModel
 from greywhale.adapt.propose import Proposal, Task, work_on
 from greywhale.base import system
 from greywhale.base.errors import UserError
-from greywhale.base.study import Workers
+from greywhale.base.study import Workers, left_at_once
 
 # A search gives way to the program that listens to the board.
 NICENESS = 10
@@ -50,13 +50,8 @@ def _work(task: Task) -> Proposal | LiveModel:
     return work_on(task)
 
 
-class _Left(Exception):
-    """Workers that are left after an error end at once."""
-
-
 @contextlib.contextmanager
 def background(workers: Workers) -> Iterator[Background]:
     """Leaving it waits for no search."""
-    with contextlib.suppress(_Left), workers.executor() as executor:
+    with left_at_once(workers) as executor:
         yield Background(executor)
-        raise _Left

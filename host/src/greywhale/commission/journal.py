@@ -53,6 +53,10 @@ class CommissioningJournal(Closing):
     def close(self) -> None:
         self._lines.close()
 
+    def __getstate__(self) -> dict[str, Any]:
+        """A copy in another process reads what was noted until then; it notes nothing."""
+        return {"folder": self.folder, "_steps": self._steps}
+
 
 def _has_steps(path: Path) -> bool:
     try:

@@ -10,13 +10,15 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import replace
-from functools import cache
+from functools import cache, partial
+from pathlib import Path
 
 import numpy as np
 
+from greywhale.arm import ArmParameters
 from greywhale.base.errors import BadUsage, UserError
-from greywhale.base.side_job import SideJob
-from greywhale.base.types import Controllers, Flags, NotedProgress, show_no_progress
+from greywhale.base.study.side_job import SideJobs, side_jobs
+from greywhale.base.types import Controllers, Flags, Floats, NotedProgress, show_no_progress
 from greywhale.commission import learn, start
 from greywhale.commission.arm_on_port import ArmOnPort, connected
 from greywhale.commission.choose import JointTrials, Row, confirm
@@ -63,6 +65,28 @@ def _failed(trial: Trial) -> Flags:
 def commission(options: CommissioningRequest, report: NotedProgress | None = None) -> CommissioningResult:
     """Find controllers on the arm; the board then runs and stores the best that was measured. Raises UserError."""
     return _Commissioning(options, report or show_no_progress).run()
+
+
+def _design(
+    options: CommissioningRequest,
+    nominal: ArmParameters,
+    pose: Floats,
+    table: ParameterTable,
+    path: Path,
+    report: NotedProgress,
+) -> None:
+    """Design the motion that shows most about the arm."""
+    designed = design(
+        nominal,
+        pose,
+        table=table,
+        ranges=options.ranges,
+        seed=options.seed,
+        budget=DESIGN_BUDGET,
+        report=report,
+        judging=options.judging.tuning.identification,
+    )
+    save_leader(path, designed.motion)
 
 
 class _Commissioning:
@@ -118,16 +142,17 @@ class _Commissioning:
 
     def _begin(self) -> learn.LearntController:
         """Excite the arm, then play the check with the controllers from before, while the first round learns."""
-        with ExitStack() as stack:
+        with side_jobs(self._report) as jobs:
             with self._connection() as connect:
-                self._find_joint_range(connect)
+                self._find_joint_range(connect, jobs)
                 tuner = self._tuner(1, None if self.options.model else to_fit(self._excite(connect), self.trials))
-                job = stack.enter_context(SideJob(tuner.tune, self._report))
+                job = jobs.begin(tuner.tune)
                 self._play_before(connect)
             self.stage = "round 1"
-            return self._finish(tuner, job.result())
+            tuned = job.result()
+        return self._finish(tuner, tuned)
 
-    def _find_joint_range(self, connect: Callable[[], ArmOnPort]) -> None:
+    def _find_joint_range(self, connect: Callable[[], ArmOnPort], jobs: SideJobs) -> None:
         """Refuse what must not move, find out where the joints may go, and design the excitation if it comes next."""
         options, journal = self.options, self.journal
         facts = journal.get("start")
@@ -138,9 +163,9 @@ class _Commissioning:
             limits = limits_of(self.nominal, arm.before, arm.pose(), options.ranges or {}, wanted)
             joint_range = JointRange(limits.pose, limits.low, limits.high)
             if options.model is None:
-                with SideJob(lambda report: self._design(joint_range, arm.before, report), self._report) as job:
-                    start.refuse_stuck(arm, journal, joint_range, options.judging.motion)
-                    job.result()
+                job = jobs.begin(self._designing(joint_range, arm.before))
+                start.refuse_stuck(arm, journal, joint_range, options.judging.motion)
+                job.result()
             else:
                 start.refuse_stuck(arm, journal, joint_range, options.judging.motion)
             save_parameters(journal.path("before.toml"), arm.before)
@@ -182,7 +207,7 @@ class _Commissioning:
             fit,
             begin=self.rounds[-1].learnt.arm if self.rounds else None,
             start=self._best_rows(),
-            failing=lambda arm: failing_plants(arm, self.trials),
+            failing=partial(failing_plants, trials=self.trials),
         )
 
     def _finish(self, tuner: learn.RoundTuner, tuned: learn.UnvalidatedTuning | None) -> learn.LearntController:
@@ -207,19 +232,9 @@ class _Commissioning:
             self.journal.note(name, facts)
         return np.array(facts["controllers"], dtype=np.int32)
 
-    def _design(self, joint_range: JointRange, table: ParameterTable, report: NotedProgress) -> None:
-        """Design the motion that shows most about the arm."""
-        designed = design(
-            self.nominal,
-            joint_range.pose,
-            table=table,
-            ranges=self.options.ranges,
-            seed=self.options.seed,
-            budget=DESIGN_BUDGET,
-            report=report,
-            judging=self.options.judging.tuning.identification,
-        )
-        save_leader(self.journal.path(EXCITING), designed.motion)
+    def _designing(self, joint_range: JointRange, table: ParameterTable) -> Callable[[NotedProgress], None]:
+        path = self.journal.path(EXCITING)
+        return partial(_design, self.options, self.nominal, joint_range.pose, table, path)
 
     def _excite(self, connect: Callable[[], ArmOnPort]) -> Log:
         """The log of that motion."""
@@ -227,7 +242,7 @@ class _Commissioning:
         path, table = self.journal.path("excite.csv"), self.trials.table
         if self.journal.get("excite") is None:
             if self.options.model is not None:
-                self._design(self.joint_range, table, self._report)
+                self._designing(self.joint_range, table)(self._report)
             played = connect().play(load_leader(self.journal.path(EXCITING)), path, table, patient=True, watched=False)
             if played.stopped:
                 raise AnewError(f"the arm cannot be excited: {played.stopped}; narrow the --range.")

@@ -32,7 +32,7 @@
 from greywhale.base.study.cluster import ClusterWorkers
 from greywhale.base.study.run import run_study
 from greywhale.base.study.task import Task, TaskFailed
-from greywhale.base.study.workers import LocalWorkers, SerialWorkers, Workers, choose_workers
+from greywhale.base.study.workers import LocalWorkers, SerialWorkers, Workers, choose_workers, left_at_once
 
 __all__ = [
     "ClusterWorkers",
@@ -42,5 +42,6 @@ __all__ = [
     "TaskFailed",
     "Workers",
     "choose_workers",
+    "left_at_once",
     "run_study",
 ]

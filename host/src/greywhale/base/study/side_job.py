@@ -1,43 +1,96 @@
-"""Work in a thread of its own, while the main thread has other things to do."""
+"""Work in a process of its own, while this one leads an arm: neither samples nor lease ever wait for it.
+
+A thread would not do. It shares this process's interpreter, which every reading of the port then asks for again.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from concurrent.futures import Future, ThreadPoolExecutor, wait
-from threading import Event
+import contextlib
+import multiprocessing
+from collections.abc import Callable, Iterator
+from concurrent.futures import BrokenExecutor, Executor, Future
+from functools import partial
+from multiprocessing.connection import Connection
 from typing import Generic, TypeVar
 
-from greywhale.base.closing import Closing
+from greywhale.base.errors import UserError
+from greywhale.base.study.workers import LocalWorkers, SerialWorkers, left_at_once
 from greywhale.base.types import NotedProgress
 
 Result = TypeVar("Result")
-CTRL_C_S = 0.2  # a wait without end would not let every system's Ctrl-C in
+LOOK_S = 0.05  # how often a report, the end or Ctrl-C is looked for
+
+_lines: list[Connection] = []  # in the process of the work: the one to whoever waits for it
 
 
-class SideJob(Closing, Generic[Result]):
-    """Runs `work`, which tells its progress. Nobody sees that until somebody waits for the result. Use as a context:
-    leaving it early interrupts the work where it next tells of itself, as Ctrl-C would.
-    """
+class SideJob(Generic[Result]):
+    """Work that tells its progress, which nobody sees until somebody waits for the result."""
 
-    def __init__(self, work: Callable[[NotedProgress], Result], report: NotedProgress) -> None:
+    def __init__(self, number: int, future: Future[Result], line: Connection, report: NotedProgress) -> None:
+        self._number = number
+        self._future = future
+        self._line = line
         self._report = report
-        self._awaited, self._over = Event(), Event()
-        self._pool = ThreadPoolExecutor(1)
-        self._future: Future[Result] = self._pool.submit(work, self._tell)
 
     def result(self) -> Result:
         """Return the work's result, or raise its error."""
-        self._awaited.set()
+        with contextlib.suppress(OSError):  # its process has ended
+            self._line.send(self._number)
         while not self._future.done():
-            wait([self._future], CTRL_C_S)
-        return self._future.result()
+            if self._told(LOOK_S):
+                self._report(*self._line.recv())
+        while self._told(0.0):
+            self._line.recv()
+        try:
+            return self._future.result()
+        except BrokenExecutor:
+            raise UserError(
+                "the process that learns beside the motion was ended, perhaps because memory was short; try again."
+            ) from None
 
-    def close(self) -> None:
-        self._over.set()
-        self._pool.shutdown()
+    def _told(self, wait_s: float) -> bool:
+        with contextlib.suppress(OSError):
+            return self._line.poll(wait_s)
+        return False
 
-    def _tell(self, what: str, fraction: float, note: str = "") -> None:
-        if self._over.is_set():
-            raise KeyboardInterrupt
-        if self._awaited.is_set():
-            self._report(what, fraction, note)
+
+class SideJobs:
+    """Begins jobs, one after the other. What a job is and gives must be fit to be pickled."""
+
+    def __init__(self, executor: Executor, line: Connection, report: NotedProgress) -> None:
+        self._executor = executor
+        self._line = line
+        self._report = report
+        self._begun = 0
+
+    def begin(self, work: Callable[[NotedProgress], Result]) -> SideJob[Result]:
+        self._begun += 1
+        future = self._executor.submit(_work, self._begun, work)
+        return SideJob(self._begun, future, self._line, self._report)
+
+
+@contextlib.contextmanager
+def side_jobs(report: NotedProgress, here: bool = False) -> Iterator[SideJobs]:
+    """One process for all jobs; leaving it ends them at once, wherever they are. `here`: no process, for tests."""
+    ours, theirs = multiprocessing.get_context("spawn").Pipe()
+    workers = SerialWorkers() if here else LocalWorkers(1, partial(_take, theirs))
+    with ours, theirs, left_at_once(workers) as executor:
+        yield SideJobs(executor, ours, report)
+
+
+def _take(line: Connection) -> None:
+    _lines.append(line)
+
+
+def _work(number: int, work: Callable[[NotedProgress], Result]) -> Result:
+    awaited = False
+
+    def tell(what: str, fraction: float, note: str = "") -> None:
+        nonlocal awaited
+        for line in _lines:
+            while not awaited and line.poll():
+                awaited = line.recv() == number
+            if awaited:
+                line.send((what, fraction, note))
+
+    return work(tell)

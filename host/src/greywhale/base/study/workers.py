@@ -69,10 +69,11 @@ class _Serial(Executor):
 
 
 class LocalWorkers:
-    """So many processes on this machine; without a number, one for every processor."""
+    """So many processes on this machine; without a number, one for every processor. Each calls `prepare` first."""
 
-    def __init__(self, count: int | None = None) -> None:
+    def __init__(self, count: int | None = None, prepare: Callable[[], object] = int) -> None:
         self.at_once = count or os.cpu_count() or 1
+        self._prepare = prepare
 
     @contextlib.contextmanager
     def executor(self) -> Iterator[Executor]:
@@ -81,7 +82,7 @@ class LocalWorkers:
         # The pool's semaphores start multiprocessing's resource tracker, which would find one lost if Ctrl-C came
         # between its making and its entry.
         with safe_path(), _hold_interrupts():
-            pool = _Pool(self.at_once, mp_context=context, initializer=_prepare, initargs=(theirs.recv,))
+            pool = _Pool(self.at_once, mp_context=context, initializer=_prepare, initargs=(theirs.recv, self._prepare))
         try:
             yield pool
         except BaseException:
@@ -91,6 +92,18 @@ class LocalWorkers:
             pool.shutdown(wait=True, cancel_futures=True)
             ours.close()
             theirs.close()
+
+
+class _Left(Exception):
+    """Workers that are left after an error end at once."""
+
+
+@contextlib.contextmanager
+def left_at_once(workers: Workers) -> Iterator[Executor]:
+    """Their executor; leaving it waits for no task."""
+    with contextlib.suppress(_Left), workers.executor() as executor:
+        yield executor
+        raise _Left
 
 
 def choose_workers(count: int | None = None, scheduler: str | None = None) -> Workers:
@@ -112,7 +125,7 @@ class _Pool(ProcessPoolExecutor):
             return super().submit(fn, *args, **kwargs)
 
 
-def _prepare(receive: Callable[[], object]) -> None:
+def _prepare(receive: Callable[[], object], prepare: Callable[[], object]) -> None:
     """In a new process: end when the other end of the line is closed, and leave Ctrl-C to the process there."""
 
     def follow() -> None:
@@ -124,6 +137,7 @@ def _prepare(receive: Callable[[], object]) -> None:
     # A handler that does nothing, and no mask: a program that a task starts then hears Ctrl-C.
     signal.signal(signal.SIGINT, lambda number, frame: None)
     system.hear_interrupts()
+    prepare()
 
 
 @contextlib.contextmanager
