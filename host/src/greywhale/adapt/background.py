@@ -13,8 +13,9 @@ from greywhale.base import system
 from greywhale.base.errors import UserError
 from greywhale.base.study import Workers, left_at_once
 
-# A search gives way to the program that listens to the board.
-NICENESS = 10
+# A search gives way to the program that listens to the board: it gets half as much of a processor that both want. Each
+# step takes a fifth, so more would leave nothing beside other programs of a busy computer.
+NICENESS = 3
 
 
 class Background:
