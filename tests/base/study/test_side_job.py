@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import os
+import subprocess
+import sys
 from functools import partial
 from pathlib import Path
 
@@ -87,3 +89,15 @@ def test_its_errors_come_with_its_result() -> None:
             jobs.begin(fail).result()
         with pytest.raises(UserError, match="the process that learns beside the motion was ended"):
             jobs.begin(end).result()
+
+
+def test_a_script_that_leads_an_arm_at_once_is_not_run_again(tmp_path: Path) -> None:
+    script = tmp_path / "script.py"
+    script.write_text(
+        "from greywhale.base.study.side_job import side_jobs\n"
+        "print('leads')\n"
+        "with side_jobs(print) as jobs:\n"
+        "    print(jobs.begin(bool).result())\n"
+    )
+    ran = subprocess.run([sys.executable, script], check=True, capture_output=True, text=True)
+    assert ran.stdout.split() == ["leads", "True"]

@@ -7,10 +7,12 @@ from __future__ import annotations
 
 import contextlib
 import multiprocessing
+import sys
 from collections.abc import Callable, Iterator
 from concurrent.futures import BrokenExecutor, Executor, Future
 from functools import partial
 from multiprocessing.connection import Connection
+from types import ModuleType
 from typing import Generic, TypeVar
 
 from greywhale.base.errors import UserError
@@ -65,8 +67,20 @@ class SideJobs:
 
     def begin(self, work: Callable[[NotedProgress], Result]) -> SideJob[Result]:
         self._begun += 1
-        future = self._executor.submit(_work, self._begun, work)
+        with _main_left_out():
+            future = self._executor.submit(_work, self._begun, work)
         return SideJob(self._begun, future, self._line, self._report)
+
+
+@contextlib.contextmanager
+def _main_left_out() -> Iterator[None]:
+    """A process that starts meanwhile does not run the caller's script again, which may well lead an arm at once."""
+    main = sys.modules["__main__"]
+    sys.modules["__main__"] = ModuleType("__main__")
+    try:
+        yield
+    finally:
+        sys.modules["__main__"] = main
 
 
 @contextlib.contextmanager
