@@ -1,4 +1,4 @@
-"""Each joint's controllers: what the arm said about them, and which is next where one hunted.
+"""Each joint's controllers: what the arm said about them, and which is next where one was restless.
 
 At the end of a commissioning each joint's best are tried together on the arm; where that is worse, joints step back:
 first those that fail; where they have nothing else left, those beside them, which shake them. A joint keeps what it had
@@ -20,7 +20,7 @@ from greywhale.loop.controllers import controllers_of
 from greywhale.protocol.table import CONTROLLER_COLUMNS
 
 Row = Integers  # (13,)
-PE_B, KP, KD, KI, KU = (CONTROLLER_COLUMNS.index(name) for name in ("pe_b", "kp", "kd", "ki", "ku_mv"))
+PE_B, KP, KI, KU = (CONTROLLER_COLUMNS.index(name) for name in ("pe_b", "kp", "ki", "ku_mv"))
 
 
 @dataclass(frozen=True)
@@ -56,22 +56,21 @@ class JointTrials:
         return any(np.array_equal(one.row, row) for one in self.tried)
 
     @property
-    def hunted(self) -> list[Row]:
-        """The controllers with which the joint hunted at rest, or ended a trial."""
-        return [one.row for one in self.tried if one.verdict.hunts]
+    def restless(self) -> list[Row]:
+        """The controllers with which the joint hunted, rattled, chattered or hissed, or ended a trial."""
+        return [one.row for one in self.tried if one.verdict.restless]
 
     def calmer(self, tuned: Row, shares: Sequence[float]) -> Row:
-        """The tuned controller, with these shares of its gains, that is the first to be softer than all that hunted;
-        where none is, the one from before.
+        """On the way from the controller before to the tuned one, the first at one of these shares of it that is
+        untried and softer than all restless ones; where none is, the one from before.
         """
-        hunted = self.hunted
+        before, restless = self.tried[0].row, self.restless
         for share in shares:
-            row = tuned.copy()
-            row[[KP, KD, KI]] = np.rint(share * row[[KP, KD, KI]])
-            row[KI] = min([row[KI], *(one[KI] for one in hunted)])
-            if all(_stiffness(row) < _stiffness(one) for one in hunted):
+            row: Row = np.rint(before + share * (tuned - before)).astype(np.int32)
+            row[KI] = min([row[KI], *(one[KI] for one in restless)])
+            if all(_stiffness(row) < _stiffness(one) for one in restless) and not self.has_tried(row):
                 return row
-        return self.tried[0].row
+        return before
 
 
 def _stiffness(row: Row) -> float:

@@ -64,8 +64,9 @@ class RoundLimits:
     )
     softer_shares: tuple[float, ...] = limit(
         (1.0, 0.5, 0.25),
-        "of the tuned gains",
-        "a joint that ended a trial gets its tuned controller, then softer ones, before it keeps that from before",
+        "of the way from the controller before to the tuned one",
+        "a joint that ended a trial, or was restless twice, gets these one after another, before it keeps that from "
+        "before",
     )
     good_error_share: float = limit(
         0.04,

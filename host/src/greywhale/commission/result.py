@@ -57,7 +57,7 @@ class Round:
 
 @dataclass(frozen=True)
 class TunedSet:
-    """What a round's tuned set, before the search on the model, leaves of the error in what a hand leads.
+    """The error in what a hand leads that is left with a round's tuned set, before the search on the model.
 
     `measured` says whether every joint's tuned controller was played to the end, beside whatever others.
     """
@@ -132,7 +132,7 @@ class CommissioningResult:
 
     @property
     def tuned(self) -> TunedSet | None:
-        """What the first round's tuned set does to the arm; None where there was no round."""
+        """The first round's tuned set; None where there was no round."""
         if not self.rounds:
             return None
         learnt = self.rounds[0].learnt

@@ -282,19 +282,19 @@ class _Commissioning:
 
     def _improve(self, trial: Trial, learnt: learn.LearntController) -> Controllers:
         """The set after a whole trial. What failed is searched again with what the arm showed, and made softer where
-        that is known to hunt; what follows poorly gets its tuned controller, and then one more search.
+        it was restless before; what follows poorly gets its tuned controller, and then one more search.
         """
         failed, poor, tried = _failed(trial), self._poor(learnt), self._have_tried(learnt.fallback)
         passed = np.array([verdict.passed for verdict in trial.verdicts])
         begin = np.where(passed[:, None], self._best_rows(), trial.rows)
-        hunting = failed & np.array([len(one.hunted) > 1 for one in self.joints])
-        for joint in np.flatnonzero(hunting).tolist():
+        restless = failed & np.array([len(one.restless) > 1 for one in self.joints])
+        for joint in np.flatnonzero(restless).tolist():
             begin[joint] = self._calmer(joint, learnt)
         simply = ~failed & poor & ~tried
         begin[simply] = learnt.fallback[simply]
         again = ~failed & poor & tried & self.improving
         self.improving &= not again.any()
-        vary = (failed & ~hunting) | again
+        vary = (failed & ~restless) | again
         if not vary.any():
             return begin
         self.on_model = self.on_model.corrected(trial)

@@ -47,7 +47,6 @@ from greywhale.tune.search.space import Space
 NONE = np.zeros(JOINTS, dtype=bool)
 NO_LIMIT_V = np.full(JOINTS, np.inf)  # of ripple in the margins' rests: the check's is limited
 LEAST_RAD2 = 1e-9
-KNOWN = 2  # plants that every search has: the model, and a worse arm
 KP, KD, KI, KU, CE_TICKS = (CONTROLLER_COLUMNS.index(name) for name in ("kp", "kd", "ki", "ku_mv", "ce_ticks"))
 GAINS = [KP, KD, KI, KU]
 
@@ -58,7 +57,7 @@ class CheckOnModel:
 
     model: ArmParameters
     arm: LedModel
-    plants: Floats  # (2 or more, columns): the model, a worse arm, and plants that hunt as the arm did
+    plants: Floats  # (2, columns): the model, and a worse arm
     trials: Trials
     foresight: Foresight
     margins_on: Callable[[Floats], Margins]  # of plants (n, columns)
@@ -68,7 +67,7 @@ class CheckOnModel:
     led: Floats  # (4,) rad², the model's error before in what a hand leads
     swings: Floats  # (2, 4) rad rms, between steps
     overshoot: Floats  # (4,) % of a step, in the check's moves
-    failing: Margins | None = None  # on the plants that hunt as the arm did
+    failing: Margins | None = None  # on plants that hunt as the arm did
     most: Controllers | None = None  # (4, 13): no joint gets a higher gain than this
 
     @classmethod
@@ -115,7 +114,7 @@ class CheckOnModel:
         """Return the check with lower aims: the model may show less of what a trial had too much of, by that ratio. All
         plants that hunt as the arm did so far join it, and no joint that hunted may have a higher gain than then.
         """
-        (known,) = self._measured(trial.rows[None], 0)
+        (known,) = self._measured(trial.rows[None], self.plants[0])
         aims: dict[str, Floats] = {}
         surer, least = self.wanted.correction_share, self.wanted.least_aim
         for name in (*RESTLESS, "error"):
@@ -129,14 +128,13 @@ class CheckOnModel:
         return replace(
             self,
             aims=Limits(**aims),
-            plants=np.vstack([self.plants[:KNOWN], failing]),
             failing=self.margins_on(failing) if len(failing) else None,
             most=most,
         )
 
     def scores(self, controllers: Controllers) -> Floats:
         """(n, 4): the error that the model shows in what a hand leads, as a share of that before."""
-        shown = [one.error[LED].sum(axis=0) for one in self._measured(controllers, 0)]
+        shown = [one.error[LED].sum(axis=0) for one in self._measured(controllers, self.plants[0])]
         return np.array(shown) / np.maximum(self.led, LEAST_RAD2)
 
     def costs(self, controllers: Controllers) -> Floats:
@@ -149,28 +147,32 @@ class CheckOnModel:
         prices, wanted = self._price_margins(self.margins, controllers, (TWICE, TEETH)), self.wanted
         if self.failing is not None:
             prices += self._price_margins(self.failing, controllers, (TWICE,))
-        ratios, restless = self.foresight.estimate(controllers, self.plants[1:KNOWN])
+        ratios, restless = self.foresight.estimate(controllers, self.plants[1:])
         prices += wanted.price * np.maximum(restless / self.swings[:, None] - 1.0, 0.0).max(axis=0)
         worse = np.maximum(ratios / wanted.before_aim - 1.0, 0.0)
         prices += wanted.steps_price * np.where(self.foresight.believed, worse, 0.0)
         errors = np.empty_like(prices)
-        for row, one in enumerate(self._measured(controllers, 0)):
+        for row, one in enumerate(self._measured(controllers, self.plants[0])):
             errors[row] = np.sqrt(one.error[LED].sum(axis=0) / np.maximum(self.led, LEAST_RAD2))
             prices[row] += wanted.price * self._beyond(one, (*RESTLESS, "error"))
             overshoot = np.nan_to_num(one.worst("overshoot"))
             prices[row] += wanted.price * np.maximum(overshoot / self.overshoot - 1.0, 0.0)
-        for plant in range(1, len(self.plants)):
+        for plant in self._unsteady():
             for row, one in enumerate(self._measured(controllers, plant, only_unrest=True)):
                 prices[row] += wanted.price * self._beyond(one, ["unrest"])
         return errors, prices
+
+    def _unsteady(self) -> Floats:
+        """Plants (n, columns) on which a joint comes to rest less easily."""
+        return self.plants[1:] if self.failing is None else np.vstack([self.plants[1:], self.failing.plants])
 
     def _price_margins(self, margins: Margins, controllers: Controllers, left_out: Sequence[str]) -> Floats:
         near = {name: found for name, found in margins.unrest(controllers).items() if name not in left_out}
         return penalty(near, NO_LIMIT_V, self.trials.judging.tuning)
 
-    def _measured(self, controllers: Controllers, plant: int, *, only_unrest: bool = False) -> Iterator[Measures]:
-        """Measure controllers (n, 4, 13), one after another, in the check on one of the plants."""
-        for traces in self.arm.run(controllers, self.plants[plant : plant + 1]):
+    def _measured(self, controllers: Controllers, plant: Floats, *, only_unrest: bool = False) -> Iterator[Measures]:
+        """Measure controllers (n, 4, 13), one after another, in the check on a plant (columns,)."""
+        for traces in self.arm.run(controllers, plant[None]):
             yield measure(traces, self.trials.check, self.trials.table.supply_v, only_unrest=only_unrest)
 
     def _beyond(self, measured: Measures, names: Iterable[str]) -> Floats:
