@@ -16,13 +16,14 @@ from greywhale.commission import CommissioningRequest, commission, learn, run
 from greywhale.commission.limits import COMMISSIONING_LIMITS, CommissioningLimits
 from greywhale.commission.page import facts, save_page
 from greywhale.commission.result import CommissioningResult, errors_beside
+from greywhale.commission.search import CheckOnModel
 from greywhale.files.arm import default_arm, load_arm
 from greywhale.files.leader import load_leader
 from greywhale.files.log import Log, read_log
 from greywhale.files.model import arm_toml
 from greywhale.loop.controllers import controllers_of
 from greywhale.protocol.table import ParameterTable
-from tests.commission.simulated import SimulatedRig, in_no_time, options_in
+from tests.commission.simulated import KP, SimulatedRig, in_no_time, options_in
 from tests.support.arms import make_arm
 from tests.support.limits import copy_of, reads_of
 from tests.tune.models import write_model
@@ -121,6 +122,37 @@ def test_what_failed_is_searched_again_and_what_did_not_keeps_its_controller(who
     failed = [verdict.known and not verdict.passed for verdict in first.verdicts]
     assert failed == [False, False, True, False]
     assert (first.rows != second.rows).any(axis=1).tolist() == failed
+
+
+def test_a_joint_far_behind_what_its_model_promised_gets_its_tuned_controller(
+    options: Make, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The set of the search passes, but it leaves joint 1 what it had."""
+
+    def search(check: CheckOnModel, begin: np.ndarray, vary: np.ndarray, *other: object) -> np.ndarray:
+        rows = begin.copy()
+        if vary.all():
+            rows[1] = check.trials.before.rows[1]
+            rows[2, KP] //= 8
+        return rows
+
+    monkeypatch.setattr(CheckOnModel, "search", search)
+    outcome = commission(options(trials=2))
+    first, second = outcome.rounds[0].trials
+    assert first.passes_at_a_price
+    tuned = outcome.rounds[0].learnt.tuned
+    assert (second.rows != first.rows).any(axis=1).tolist() == [False, True, False, False]
+    assert np.array_equal(outcome.best.rows[1], tuned[1])
+
+
+def test_the_summary_says_what_the_tuned_set_alone_leaves(whole: Whole) -> None:
+    outcome = whole.outcome
+    told = outcome.as_dict()
+    assert outcome.tuned is not None
+    assert (told["score"], told["tuned_score"]) == pytest.approx((outcome.best.score, outcome.tuned.score), abs=1e-4)
+    assert not told["tuned_measured"], "joint 2 ended the one trial of its tuned controller"
+    said = f"{100.0 * outcome.best.score:.1f} % is left now. The tuned set alone leaves {100.0 * outcome.tuned.score:.1f} %"
+    assert f"{said} by the model; joint 2 (wrist pitch) hunted with it." in outcome.text()
 
 
 @pytest.mark.parametrize(
