@@ -6,10 +6,13 @@ import numpy as np
 import pytest
 
 from greywhale.arm import ArmParameters
+from greywhale.arm.parameters import with_usual_noise
 from greywhale.arm.plants import column, plant_row
 from greywhale.files.arm import default_arm
 from greywhale.loop import Experiment, human_reaches
 from greywhale.loop.closed_loop import FollowerLines, shown_angles
+from greywhale.loop.led_model import predict
+from greywhale.loop.traces import Traces
 from greywhale.protocol.firmware import TICK_S
 from greywhale.protocol.table import ParameterTable
 from greywhale.tune.search.training import reach
@@ -44,6 +47,22 @@ def test_a_board_that_knows_the_zero_angle_reads_the_true_one() -> None:
     counts = round(ZERO_RAD / pot.track * 16384)
     known = table.with_raw({"follower0.zero": table["follower0.zero"] - counts})
     assert FollowerLines.of(turned(YAW), known).plus == pytest.approx(np.zeros(4), abs=1e-3)
+
+
+@pytest.mark.parametrize("direction", [1, -1])
+def test_a_led_model_reads_a_potentiometer_as_its_board_does(direction: int) -> None:
+    """One that is mounted turned or the other way round, and calibrated so, changes nothing."""
+    arm, table = with_usual_noise(default_arm()), ParameterTable.defaults()
+    time_s = np.arange(300) * TICK_S
+    path = np.repeat(0.3 * np.sin(6.0 * time_s)[:, None], 4, axis=1)
+    played = Traces(leader=path, follower=path, voltage=np.zeros_like(path), begins=0.0)
+    pots = [pot.model_copy(update={"centre": ZERO_RAD, "direction": direction}) for pot in arm.follower_pots.joint]
+    turned_arm = arm.model_copy(update={"follower_pots": arm.follower_pots.model_copy(update={"joint": tuple(pots)})})
+    counts = round(direction * ZERO_RAD / pots[0].track * 16384)
+    raw = {f"follower{joint}.zero": 8184 - counts for joint in range(4)}
+    raw |= {f"follower{joint}.scale": direction * table[f"follower{joint}.scale"] for joint in range(4)}
+    (usual,), (turned_one,) = predict(arm, table, played), predict(turned_arm, table.with_raw(raw), played)
+    np.testing.assert_allclose(turned_one.follower, usual.follower, atol=2e-3)
 
 
 def test_play_and_lag_count_as_they_are_shown() -> None:

@@ -6,15 +6,14 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from greywhale.arm import ArmParameters
-from greywhale.arm.parameters import with_usual_noise
+from greywhale.arm import ArmParameters, PotentiometerBank
+from greywhale.arm.parameters import MOST_NOISE_V, USUAL_TRACK_RAD, Potentiometer, with_usual_noise
 from greywhale.arm.plants import plant_row
 from greywhale.base.types import Controllers, Floats
-from greywhale.loop.closed_loop import ClosedLoop, known_readings, shown_angles, with_ideal_follower
+from greywhale.loop.closed_loop import ClosedLoop, FollowerLines, known_readings, shown_angles, with_ideal_follower
 from greywhale.loop.controllers import controllers_of
 from greywhale.loop.traces import Traces
 from greywhale.protocol.firmware import JOINTS, TICK_S, pwm_steps
-from greywhale.protocol.joints import unused
 from greywhale.protocol.table import ParameterTable
 
 # The model stands at the log's first pose for so long before it is led, so that it starts at rest.
@@ -27,15 +26,14 @@ class LedModel:
 
     def __init__(self, arm: ArmParameters, table: ParameterTable, played: Traces) -> None:
         noisy = with_usual_noise(arm)
-        zero = np.array([pot.centre for pot in noisy.follower_pots.joint])
-        zero[list(unused(arm.joints_in_use))] = 0.0
+        zero = FollowerLines.of(arm, table).plus
         reference = np.vstack([np.tile(played.leader[:1], (LEAD_TICKS, 1)), played.leader])
         stops = [(joint.stops.min, joint.stops.max) for joint in arm.joint]
         home = [float(np.clip(angle, *stops[joint])) for joint, angle in enumerate(played.follower[0] + zero)]
         self._loop = ClosedLoop(
             with_ideal_follower(table),
             known_readings(reference, reference + zero),
-            noisy.follower_pots,
+            _read_by_an_ideal_board(noisy.follower_pots, zero),
             seed=NOISE_SEED,
             home=home,
             gap=[0.0] * JOINTS,
@@ -56,6 +54,15 @@ class LedModel:
                 voltage=duties[LEAD_TICKS:].astype(np.float64) * self._volts,
                 begins=self._played.begins,
             )
+
+
+def _read_by_an_ideal_board(pots: PotentiometerBank, zero: Floats) -> PotentiometerBank:
+    """Usual potentiometers that read 0 at these angles (4,) rad, and are as noisy as those of the arm."""
+    noise = [min(pot.noise * USUAL_TRACK_RAD / pot.track, MOST_NOISE_V) for pot in pots.joint]
+    usual = zip(zero.tolist(), noise, strict=True)
+    return PotentiometerBank(
+        supply=pots.supply, joint=tuple(Potentiometer(centre=centre, noise=size) for centre, size in usual)
+    )
 
 
 def predict(arm: ArmParameters, table: ParameterTable, played: Traces, plants: Floats | None = None) -> list[Traces]:
