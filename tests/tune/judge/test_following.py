@@ -1,26 +1,28 @@
-"""Joints that follow worse than before are named, and never chosen unless they hunted."""
+"""Joints that follow worse than before are named, and chosen only for much that they gain, or for calm."""
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
 
 from greywhale.files.arm import default_arm
-from greywhale.loop import Experiment, default_controller, human_reaches, plant_row
-from greywhale.tune.judge.following import ErrorsBefore, worse_followers
+from greywhale.loop import default_controller, human_reaches, plant_row
+from greywhale.protocol.table import ParameterTable
+from greywhale.tune.judge.following import FollowingBefore, worse_followers
 from greywhale.tune.limits import TUNING_LIMITS
-from greywhale.tune.search.objective import FollowingErrors
-from greywhale.tune.search.training import TrainingMotion
+from greywhale.tune.possible import scale_of
+from greywhale.tune.search.objective import Objective
+from greywhale.tune.search.training import TrainingMotion, abrupt_moves, own_motion
 
 PLANT = plant_row(default_arm())
 BEFORE = default_controller()
 
 
 def drill(name: str) -> TrainingMotion:
-    motion = human_reaches(4, 2.0)
-    return TrainingMotion(name, motion, Experiment(motion, default_arm(), noise=False, soft_start=False), 1.0, 1.0)
+    return replace(own_motion(human_reaches(4, 2.0), default_arm(), ParameterTable.defaults(), PLANT[None]), name=name)
 
 
 def test_a_joint_that_follows_worse_is_named_with_motion_and_factor() -> None:
@@ -46,13 +48,30 @@ def test_what_nobody_would_see_is_not_named(before: float, after: float, named: 
     assert [one.joint for one in found] == [0] * named
 
 
-def test_only_a_joint_that_hunts_may_follow_a_class_of_motions_less_closely() -> None:
-    hunts = np.array([False, False, True, False])
-    errors = ErrorsBefore(np.full((2, 4), 0.1), hunts)
-    allowed = TUNING_LIMITS.following.error_slack * 0.1 + TUNING_LIMITS.cost.least_room_rad
-    error = np.full((1, 3, 2, 4), 0.05)
-    error[0, 0, 1] = [allowed, 1.1 * allowed, 9.0 * allowed, 0.1]
-    error[0, 1:, :, 3] = 1.0  # other plants are no promise
-    none = np.zeros_like(error)
-    excess = errors.excess(FollowingErrors(error, none, none, none))
-    np.testing.assert_allclose(excess, [[0.0, 0.1, 0.0, 0.0]], atol=1e-12)
+def test_only_a_joint_that_hunts_follows_a_class_of_motions_less_closely_for_nothing() -> None:
+    drills, plants = [drill("reaches")], PLANT[None]
+    objective = Objective(drills, plants, scale_of(drills, plants, BEFORE))
+    weak = BEFORE.copy()
+    weak[[1, 2], 11] //= 3
+    hunts = np.array([False, True, False, False])
+    rows = np.stack([BEFORE, weak])
+    for exact in (False, True):
+        before = FollowingBefore.of(objective, drill("abrupt moves"), BEFORE, hunts, exact)
+        prices = before.price(objective.follow(rows, exact), rows)
+        assert not prices[0].any()
+        assert not prices[1, [0, 1, 3]].any(), "joint 1 hunted, and neighbours hardly notice"
+        assert prices[1, 2] > TUNING_LIMITS.following.behind_price
+        outweighed = before.outweighs(objective.costs(rows, exact))
+        np.testing.assert_array_equal(outweighed, [[False] * 4, [False, False, True, False]])
+
+
+def test_abrupt_moves_count_though_nobody_trains_on_them() -> None:
+    """A joint that follows only these less closely pays, too."""
+    drills, plants = [drill("reaches")], PLANT[None]
+    objective = Objective(drills, plants, scale_of(drills, plants, BEFORE))
+    edges = abrupt_moves(default_arm(), ParameterTable.defaults(), plants, 0.01, 0, TUNING_LIMITS.training)
+    before = FollowingBefore.of(objective, edges, BEFORE, np.zeros(4, dtype=bool), exact=False)
+    found = objective.follow(BEFORE[None])
+    slower = replace(before, error=before.error * np.array([[1.0], [0.5]]))
+    assert not before.price(found, BEFORE[None]).any()
+    assert (slower.price(found, BEFORE[None]) > 0.5).all()

@@ -9,7 +9,7 @@
 3. `every corner`: a narrow search from there, in which each corner and factor is free.
 4. The best few of every joint are judged anew, on all plants and with other noise (`judge/choose.py`). The controller
    from before the tuning competes too, and the bench's own arithmetic has the last word, so no joint ends worse than it
-   began, and none follows a class of motions less closely. A joint that falls short there is searched once more.
+   began. A joint that falls short there, or follows some motions less closely, is searched once more.
 
 Margins are looked at on the search's two plants alone. Of many drawn arms the softest would decide, and it is softer
 than the arm by more than recordings err.
@@ -34,7 +34,7 @@ from greywhale.optimise.shift_invariant import ShiftInvariantWolfWhale
 from greywhale.protocol.joints import unused
 from greywhale.protocol.table import CONTROLLER_COLUMNS
 from greywhale.tune.judge.choose import CachedJudge, Judge, choose, next_best
-from greywhale.tune.judge.following import ErrorsBefore, worse_followers
+from greywhale.tune.judge.following import FollowingBefore, worse_followers
 from greywhale.tune.judge.held_out import judge_held_out
 from greywhale.tune.judge.margins import MOVING, Margin, Margins, penalty
 from greywhale.tune.judge.standard import Standard, hunting_everywhere
@@ -46,7 +46,7 @@ from greywhale.tune.search.journal import TuningJournal
 from greywhale.tune.search.lockstep import KEPT, TOGETHER, TURNS, LockstepSearch, SearchState
 from greywhale.tune.search.objective import Objective
 from greywhale.tune.search.space import Space
-from greywhale.tune.search.training import TrainingMotion, own_motion, training_motions
+from greywhale.tune.search.training import TrainingMotion, abrupt_moves, own_motion, training_motions
 
 BUDGET = 2400
 METHOD = ShiftInvariantWolfWhale.name  # of the default method
@@ -115,7 +115,10 @@ class DefaultMethod:
         self.margins_before = self.judging_margins.check(self.start)
         self.standard = Standard.of(self.margins_before, self.table.supply_v, self.limits.quiet, self.limits)
         hunts = hunting_everywhere(self.margins_before)
-        self.errors_before = {exact: ErrorsBefore.of(self.judging, self.start, hunts, exact) for exact in (False, True)}
+        edge_s, training = self.limits.following.abrupt_s, self.limits.training
+        self.abrupt = abrupt_moves(model.arm, self.table, model.plants, edge_s, task.seed + JUDGING_SEED, training)
+        common = (self.judging, self.abrupt, self.start, hunts)
+        self.before = {exact: FollowingBefore.of(*common, exact, self.limits) for exact in (False, True)}
         self.found = SearchState.nothing(self.start)
 
     def _motions(self, seed: int) -> tuple[TrainingMotion, ...]:
@@ -192,9 +195,10 @@ class DefaultMethod:
         if self.limits.by_the_arm:
             return costs + limits.unrest_weight_on_arm * restless
         kept = (controllers == self.start).all(axis=2)
-        behind = (self.errors_before[exact].excess(found) > 0.0) & ~kept
-        short: Flags = self.standard.falls_short(unrest, kept) | behind
-        return costs + restless + limits.unfit_cost * short
+        before = self.before[exact]
+        followed = costs + np.where(kept, 0.0, before.price(found, controllers))
+        short: Flags = self.standard.falls_short(unrest, kept) | (before.outweighs(followed) & ~kept)
+        return followed + restless + limits.unfit_cost * short
 
     def _contenders(self) -> Controllers:
         """The best few of every joint (k, 4, 13), and the best with less voltage or integral: steadier and quieter."""
@@ -235,16 +239,26 @@ class DefaultMethod:
     def _choose_first(self, judge: Judge) -> tuple[Controllers, Controllers]:
         """The best combination of all contenders, and those (k, 4, 13).
 
-        A joint that keeps what it had, though its search found something else, is searched again.
+        A joint that keeps what it had, though its search found something else, is searched again, and one that follows
+        some motions less closely than before.
         """
         contenders, limits = self._contenders(), self.limits.choice
         first, _, _ = choose(self.start, contenders, judge, limits)
         missed = (first == self.start).all(axis=1) & (contenders[0] != self.start).any(axis=1)
-        if missed.any() and not self.limits.by_the_arm:
+        if self.limits.by_the_arm:
+            return first, contenders
+        short = missed | ((self._prices(first) > 0.0) & (first != self.start).any(axis=1))
+        if short.any():
             rows = np.where(missed[:, None], contenders[0], first)
-            contenders = np.concatenate([self._search_again(rows, missed), contenders])
+            contenders = np.concatenate([self._search_again(rows, short), contenders])
             first, _, _ = choose(self.start, contenders, judge, limits)
         return first, contenders
+
+    def _prices(self, controllers: Controllers) -> Floats:
+        """The prices (4,) of what one combination follows less closely than before."""
+        rows = controllers[None]
+        prices: Floats = self.before[False].price(self.judging.follow(rows), rows)[0]
+        return prices
 
     def _judge_exactly(self, after: Controllers, judge: Judge, judge_exactly: Judge) -> tuple[_Chosen, Flags]:
         """A combination with its margins and costs, and its changed joints (4,) that must not stay as they are."""
@@ -269,10 +283,8 @@ class DefaultMethod:
             unrest = self.margins.unrest(controllers)
             restless = penalty(unrest, self.standard.quiet_v, self.limits, strict=True)
             found = self.objective.follow(controllers)
-            behind = self.errors_before[False].excess(found)
-            return self.objective.costs_of(found) + restless + limits.strict_fail_price * np.ceil(behind) + behind
+            return self.objective.costs_of(found) + restless + self.before[False].price(found, controllers)
 
-        limits = self.limits.margins
         search = LockstepSearch(costs, SearchState.nothing(rows))
         search.try_again(AGAIN.name)
         stage = replace(AGAIN, groups=(np.flatnonzero(short).tolist(),))
@@ -302,7 +314,13 @@ class DefaultMethod:
         plant = model.plants[0]
         held_out = judge_held_out(model.arm, self.table, plant, task.before, after, task.threads, self.limits)
         worse = worse_followers(
-            held_out, self.judging.drills, plant, task.before, after, model.arm.joints_in_use, task.threads
+            held_out,
+            (*self.judging.drills, self.abrupt),
+            plant,
+            task.before,
+            after,
+            model.arm.joints_in_use,
+            task.threads,
         )
         task.report("judging", 1.0)
         return Judgement(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Self, TypedDict
 
 import numpy as np
@@ -66,24 +66,51 @@ def _is_worse(was: float, now: float, limits: FollowingLimits) -> bool:
 
 
 @dataclass(frozen=True)
-class ErrorsBefore:
-    """The errors (classes, 4) of the controllers from before on the estimate, which a changed joint may not exceed.
+class FollowingBefore:
+    """The controllers from before as a measure: errors (classes, 4) in rad on the estimate, costs (4,) without unrest.
 
-    A joint that hunts there at rest (`hunts`) may follow less closely if that calms it.
+    Beside the classes of training motions stand abrupt moves: nobody trains on these, but a joint whose large moves got
+    quicker may overshoot there. A joint that hunts at rest (`hunts`) may follow less closely if that calms it.
     """
 
+    objective: Objective
+    abrupt: TrainingMotion
+    exact: bool
     error: Floats
+    cost: Floats
     hunts: Flags
     judging: TuningLimits = TUNING_LIMITS
 
     @classmethod
-    def of(cls, objective: Objective, start: Controllers, hunts: Flags, exact: bool = False) -> Self:
-        """Of the controllers `start` (4, 13), on the plant that an objective names first."""
-        found = follow(objective.drills, objective.plants[:1], start[None], exact=exact, threads=objective.threads)
-        return cls(found.error[0, 0], hunts)
+    def of(
+        cls,
+        objective: Objective,
+        abrupt: TrainingMotion,
+        start: Controllers,
+        hunts: Flags,
+        exact: bool,
+        judging: TuningLimits = TUNING_LIMITS,
+    ) -> Self:
+        """Of the controllers `start` (4, 13)."""
+        found = objective.follow(start[None], exact)
+        empty = cls(objective, abrupt, exact, np.zeros(0), objective.costs_of(found)[0], hunts, judging)
+        return replace(empty, error=empty._errors(found, start[None])[0])
 
-    def excess(self, found: FollowingErrors) -> Floats:
-        """By how much a joint of a candidate follows some class of motions worse, as a share of the error, (n, 4)."""
-        most = self.judging.following.error_slack * self.error + self.judging.cost.least_room_rad
-        beyond: Floats = np.maximum(found.error[:, 0] / most - 1.0, 0.0).max(axis=1)
-        return np.where(self.hunts, 0.0, beyond)
+    def price(self, found: FollowingErrors, controllers: Controllers) -> Floats:
+        """What candidates (n, 4, 13) pay, (n, 4), for a class of motions that they follow less closely than before."""
+        limits = self.judging.following
+        most = self.error + self.judging.cost.least_room_rad
+        beyond = np.maximum(self._errors(found, controllers) / most - 1.0, 0.0).max(axis=1)
+        prices: Floats = np.where((beyond > 0.0) & ~self.hunts, limits.behind_price + beyond, 0.0)
+        return prices
+
+    def outweighs(self, costs: Floats) -> Flags:
+        """True where a candidate follows no better than this on the whole, (n, 4); `costs` hold no price of unrest."""
+        outweighed: Flags = (costs > self.judging.choice.joint_slack * self.cost) & ~self.hunts
+        return outweighed
+
+    def _errors(self, found: FollowingErrors, controllers: Controllers) -> Floats:
+        """(n, classes, 4) on the estimate."""
+        one = self.objective
+        sharp = follow([self.abrupt], one.plants[:1], controllers, exact=self.exact, threads=one.threads)
+        return np.concatenate([found.error[:, 0], sharp.error[:, 0]], axis=1)

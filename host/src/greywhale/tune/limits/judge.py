@@ -129,12 +129,13 @@ class ChoiceLimits:
 class FollowingLimits:
     """How much worse than before a joint may follow (`judge/following.py`)."""
 
-    error_slack: float = limit(
-        1.05,
-        "times the error before",
-        "a changed joint may follow no class of training motions less closely, unless it hunted at rest: noise and "
-        "neighbours make this difference",
+    behind_price: float = limit(
+        0.1,
+        "of what is possible",
+        "the price of a class of motions that a changed joint follows less closely, unless it hunted at rest; on top "
+        "of it comes what is beyond, as a share of the error before",
     )
+    abrupt_s: float = limit(0.01, "s", "of an edge of abrupt moves: a quick hand, and a leader that something pushes")
     follows_worse: float = limit(
         1.1, "times the mean squared error before", "from here on a person is told and, before an upload, asked"
     )

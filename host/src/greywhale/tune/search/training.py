@@ -7,7 +7,7 @@ record weighs as much as the first. In slow following the leader hardly ever res
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -62,6 +62,15 @@ def training_motions(
         _training_motion(name, *facts, arm, table, noise_seed(seed, number))
         for number, (name, facts) in enumerate(classes.items())
     )
+
+
+def abrupt_moves(
+    arm: ArmParameters, table: ParameterTable, plants: Floats, edge_s: float, seed: int, limits: TrainingLimits
+) -> TrainingMotion:
+    """Moves to both sides whose edges are sharper than those of the training."""
+    motion = moves(*reach(arm, table, plants, limits), replace(limits, edge_s=edge_s))
+    weight = time_since_move(motion, WAIT_S, limits)
+    return _training_motion("abrupt moves", motion, weight, 1.0, arm, table, noise_seed(seed, 0))
 
 
 def noise_seed(seed: int, number: int) -> int:
