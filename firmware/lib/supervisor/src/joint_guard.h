@@ -1,6 +1,7 @@
 // What a joint's motor may get until the next look at the joint: all, a gentle push, or what holds it against gravity.
 // All comes back step by step. At once it would throw the arm after a hand that lets go, and beat against a hand that
-// gives way like a spring: pushed back by a motor that has all, held back, pressed away, and again.
+// gives way like a spring: pushed back by a motor that has all, held back, pressed away, and again. A joint that goes
+// away from its reference gets it four times as fast: it may be falling.
 #pragma once
 #include <signal_chain/cosine.h>
 #include <stdint.h>
@@ -25,7 +26,7 @@ class JointGuard {
     uint16_t& most = most_mv_[joint];
     if (hold > Hold::free) most = held_mv(hold, seen, limits);
     else if (hold == Hold::unknown || most >= all_mv) most = UINT16_MAX;
-    else most = static_cast<uint16_t>(most + comes_back_mv);
+    else most = static_cast<uint16_t>(most + (supervisor.goes(joint, seen.error < 0) ? 4 : 1) * comes_back_mv);
   }
   uint16_t most_mv(uint8_t joint) const { return most_mv_[joint]; }
 

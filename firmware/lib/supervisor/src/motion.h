@@ -79,10 +79,10 @@ class Motion {
   }
   Hold hold(uint8_t joint) const { return joints_[joint].hold; }
   int16_t load_mv(uint8_t joint) const { return joints_[joint].load_mv; }
-  // Whether the joint goes toward its reference, as its motor can.
-  bool comes_nearer(uint8_t joint, int16_t error) const {
+  // Whether the joint goes up, or down.
+  bool goes(uint8_t joint, bool up) const {
     const int16_t speed = joints_[joint].speed;
-    return error < 0 ? speed < -moves : speed > moves;
+    return up ? speed > moves : speed < -moves;
   }
 
  private:

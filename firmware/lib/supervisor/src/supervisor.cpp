@@ -130,7 +130,7 @@ bool Supervisor::is_lost(uint8_t joint, int16_t error) {
   uint16_t& lost = lost_ms_[joint];
   const bool near = size_of(error) <= limits_.tracking_limit;
   if (near) lost = 0;
-  if (near || motion_.comes_nearer(joint, error)) return false;
+  if (near || motion_.goes(joint, error > 0)) return false;
   lost = static_cast<uint16_t>(lost + joint_count);
   return lost >= limits_.tracking_ms;
 }

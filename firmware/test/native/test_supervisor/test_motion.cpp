@@ -177,12 +177,12 @@ TEST_CASE("what holds a load, moves slowly or starts late is not held back") {
   for (const Reading* joint : {&holds, &slow, &late}) CHECK(joint->held_s < 0);
 }
 
-TEST_CASE("a joint that comes nearer to its reference is told from one that stands or goes away") {
+TEST_CASE("a joint that goes up is told from one that stands or goes down") {
   for (const double speed : {0.6, 0.0, -0.6}) {
     Reading joint;
     joint.run(0, 0.3, [speed](double s) { return speed * s; }, always(2), 1);
-    CHECK(joint.motion.comes_nearer(2, 4096) == (speed > 0));
-    CHECK(joint.motion.comes_nearer(2, -4096) == (speed < 0));
+    CHECK(joint.motion.goes(2, true) == (speed > 0));
+    CHECK(joint.motion.goes(2, false) == (speed < 0));
   }
 }
 
