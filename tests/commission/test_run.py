@@ -106,7 +106,8 @@ def test_a_round_ends_where_more_trials_are_not_worth_their_time(
     trials = outcome.rounds[0].trials
     assert len(trials) == 3
     journal = outcome.trials.journal
-    assert [journal.get(f"after-trial-{number:02d}") is None for number in (2, 3)] == [False, True]
+    steps_back = [journal.get(f"after-trial-{number:02d}") is None for number in (1, 2, 3)]
+    assert steps_back == [True] * 3, "what ended a trial, or was restless twice, is led back without a search"
     beside = [errors_beside(outcome.predicted(trial, outcome.rounds[0]), trial) for trial in trials]
     assert [step for step in steps if "trial" in step[0]] == [
         (f"round 1, trial {number} of 3 at most: recording", note) for number, note in enumerate(["", *beside[:2]], 1)
@@ -143,6 +144,8 @@ def test_a_joint_far_behind_what_its_model_promised_gets_its_tuned_controller(
     tuned = outcome.rounds[0].learnt.tuned
     assert (second.rows != first.rows).any(axis=1).tolist() == [False, True, False, False]
     assert np.array_equal(outcome.best.rows[1], tuned[1])
+    searched = [outcome.trials.journal.get(f"after-trial-{number:02d}") is not None for number in (1, 2)]
+    assert searched == [True, False], "joint 3, which rattles, is searched again, but not after the last trial"
 
 
 def test_the_summary_says_what_the_tuned_set_alone_leaves(whole: Whole) -> None:
@@ -151,7 +154,8 @@ def test_the_summary_says_what_the_tuned_set_alone_leaves(whole: Whole) -> None:
     assert outcome.tuned is not None
     assert (told["score"], told["tuned_score"]) == pytest.approx((outcome.best.score, outcome.tuned.score), abs=1e-4)
     assert not told["tuned_measured"], "joint 2 ended the one trial of its tuned controller"
-    said = f"{100.0 * outcome.best.score:.1f} % is left now. The tuned set alone leaves {100.0 * outcome.tuned.score:.1f} %"
+    left, alone = 100.0 * outcome.best.score, 100.0 * outcome.tuned.score
+    said = f"{left:.1f} % is left now. The tuned set alone leaves {alone:.1f} %"
     assert f"{said} by the model; joint 2 (wrist pitch) hunted with it." in outcome.text()
 
 
