@@ -28,12 +28,10 @@ def test_they_are_no_zero_angle(white_box: ArmParameters, tmp_path: Path) -> Non
     lossy = make_arm(white_box, follower_pots={"joint": {"noise": 0.002}}, joint_1=shoulder)
     log = record(lossy, alone(human_reaches(11, 9.0)), tmp_path / "fit.csv", table_of("before_tuning"))
     search = Search(white_box, [prepare(log, 1)], (), (1,), 0, show_no_progress)
-    search._begin_part("fitting", 0.0, 1.0)
-    search._consider(search._fit_motors())
-    search._consider(search._fit_friction())
-    search._consider_rivals(("zero angles", "drivers that lose volts"), 3)
+    search.run()
     best = search.best
     assert best is not None
+    assert best.order == "drivers that lose volts"
     found = dict(zip(best.space.names, best.space.values(best.x), strict=True))
     assert found["joint1.uneven"] == pytest.approx(0.5 * (LOST_UP - LOST_DOWN), abs=0.02)
     np.testing.assert_array_equal(best.zero, np.zeros(4))

@@ -97,7 +97,7 @@ class FollowingBefore:
         return replace(empty, error=empty._errors(found, start[None])[0])
 
     def price(self, found: FollowingErrors, controllers: Controllers) -> Floats:
-        """What candidates (n, 4, 13) pay, (n, 4), for a class of motions that they follow less closely than before."""
+        """Price candidates (n, 4, 13) for a class of motions that they follow less closely than before: (n, 4)."""
         limits = self.judging.following
         most = self.error + self.judging.cost.least_room_rad
         beyond = np.maximum(self._errors(found, controllers) / most - 1.0, 0.0).max(axis=1)

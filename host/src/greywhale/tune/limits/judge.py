@@ -127,7 +127,7 @@ class ChoiceLimits:
 
 @dataclass(frozen=True)
 class FollowingLimits:
-    """How much worse than before a joint may follow (`judge/following.py`)."""
+    """The following of a joint beside that of before (`judge/following.py`)."""
 
     behind_price: float = limit(
         0.1,
@@ -137,7 +137,7 @@ class FollowingLimits:
     )
     abrupt_s: float = limit(0.01, "s", "of an edge of abrupt moves: a quick hand, and a leader that something pushes")
     follows_worse: float = limit(
-        1.1, "times the mean squared error before", "from here on a person is told and, before an upload, asked"
+        1.05, "times the mean squared error before", "from here on a person is told and, before an upload, asked"
     )
     unseen_rad: float = limit(
         1e-3, "rad rms", "and only if the error grew by this: a step of a potentiometer's reading is five times that"
