@@ -92,6 +92,7 @@ def _judged(
     verdicts = tuple(
         judge.judge(subject, arm, found.plant, found.zero, found.joints, found.draws) for subject in subjects
     )
+    at_bounds = () if found.covariance is None else doubt_bounds(found.estimates)  # other methods have other bounds
     return IdentificationResult(
         white_box=arm,
         method=method,
@@ -99,7 +100,7 @@ def _judged(
         found=found,
         verdicts=verdicts,
         warnings=(*remarks, *judge.warnings_of(verdicts), *judge.undecided_of(verdicts)),
-        doubts=(*doubt_bounds(found.estimates), *judge.doubts_of(verdicts, found.joints)),
+        doubts=(*at_bounds, *judge.doubts_of(verdicts, found.joints)),
         subjects=tuple(subjects),
     )
 
