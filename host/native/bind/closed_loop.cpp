@@ -148,8 +148,7 @@ nb::tuple leader_readings(const loop::Settings& settings, const loop::Timing& ti
 nb::object follower_lines(const loop::Settings& settings, const loop::Pots4& leader_pots, double leader_supply,
                           const loop::Pots4& follower_pots, double follower_supply) {
   Array<double> found({2, kJoints});
-  const loop::Lines lines =
-      loop::follower_lines(settings, leader_pots, leader_supply, follower_pots, follower_supply);
+  const loop::Lines lines = loop::follower_lines(settings, leader_pots, leader_supply, follower_pots, follower_supply);
   for (std::size_t i = 0; i < kJoints; ++i) {
     found.data()[i] = lines[i].times;
     found.data()[kJoints + i] = lines[i].plus;

@@ -51,8 +51,7 @@ struct Losses {
 // The duties that drivers pass on.
 GREYWHALE_INLINE void lose(const Losses& losses, Float (&arriving)[kJoints]) {
   for (std::size_t i = 0; i < kJoints; ++i) {
-    arriving[i] =
-        greatest(arriving[i] - losses.up[i], all(0.0f)) + least(arriving[i] + losses.down[i], all(0.0f));
+    arriving[i] = greatest(arriving[i] - losses.up[i], all(0.0f)) + least(arriving[i] + losses.down[i], all(0.0f));
   }
 }
 
