@@ -1,0 +1,41 @@
+"""The remedy of a doubt helps: who follows it has no doubt any more."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from greywhale.arm import ArmParameters
+from greywhale.identify import identify
+from greywhale.loop import human_reaches
+from greywhale.measure.swings_in_logs import FIT_IT
+from greywhale.tune.model import load_model
+from tests.identify.conftest import alone
+from tests.support.arms import make_arm
+from tools.support.recordings import record, table_of
+
+ROLL = 3
+
+
+@pytest.mark.slow
+def test_a_log_that_is_fitted_too_takes_the_doubt_about_it_away(white_box: ArmParameters, tmp_path: Path) -> None:
+    """One log leaves open if play or load friction held the roll back; one of another controller shows it."""
+    friction = {"coulomb": 0.05, "breakaway": 0.05}
+    loose = make_arm(white_box, follower_pots={"joint": {"noise": 0.002, "play": 0.02}}, joint_3={"friction": friction})
+    tables = [table_of("before_tuning"), table_of("table_10")]
+    motions = [alone(human_reaches(20 + number, 8.0), (ROLL,)) for number in range(4)]
+    first, second, changed, other = (
+        record(loose, motion, tmp_path / f"{number}.csv", tables[number // 2]) for number, motion in enumerate(motions)
+    )
+    doubtful = identify([first], white_box, validate=[second, changed], tables=tables)
+    (doubt,) = doubtful.doubts
+    assert "joint 3 (wrist roll) follows otherwise than the model" in doubt
+    assert doubt.endswith(f"{FIT_IT}.")
+    doubtful.save(tmp_path / "doubtful.toml")
+    assert any("is worse than the arm file" in one for one in load_model(tmp_path / "doubtful.toml", force=True).doubts)
+    mended = identify([first, changed], white_box, validate=[second, other], tables=tables)
+    assert mended.doubts == ()
+    mended.save(tmp_path / "mended.toml")
+    left = load_model(tmp_path / "mended.toml", force=True).doubts
+    assert not any("worse than the arm file" in one or "otherwise than the model" in one for one in left)
