@@ -1,7 +1,7 @@
 // What a joint's motor may get until the next look at the joint: all, a gentle push, or what holds it against gravity.
 // All comes back step by step. At once it would throw the arm after a hand that lets go, and beat against a hand that
-// gives way like a spring: pushed back by a motor that has all, held back, pressed away, and again. A joint that goes
-// away from its reference gets it four times as fast: it may be falling.
+// gives way like a spring: pushed back by a motor that has all, held back, pressed away, and again. A pitch joint
+// that goes away from its reference may be falling, and gets it eight times as fast.
 #pragma once
 #include <signal_chain/cosine.h>
 #include <stdint.h>
@@ -26,23 +26,26 @@ class JointGuard {
     uint16_t& most = most_mv_[joint];
     if (hold > Hold::free) most = held_mv(hold, seen, limits);
     else if (hold == Hold::unknown || most >= all_mv) most = UINT16_MAX;
-    else most = static_cast<uint16_t>(most + (supervisor.goes(joint, seen.error < 0) ? 4 : 1) * comes_back_mv);
+    else
+      most = static_cast<uint16_t>(most +
+                                   (may_fall(joint) && supervisor.goes(joint, seen.error < 0) ? 8 : 1) * comes_back_mv);
   }
   uint16_t most_mv(uint8_t joint) const { return most_mv_[joint]; }
 
  private:
+  static bool may_fall(uint8_t joint) { return joint == 1 || joint == 2; }
   static int16_t gravity_mv(uint8_t joint, const Gravity& gravity);
   static uint16_t held_mv(Hold hold, const JointSeen& seen, const MotionLimits& limits);
 
-  static constexpr uint16_t all_mv = 32767;       // more than any supply
-  static constexpr uint16_t comes_back_mv = 128;  // a look, 32 V/s
+  static constexpr uint16_t all_mv = 32767;      // more than any supply
+  static constexpr uint16_t comes_back_mv = 64;  // a look, 16 V/s
 
   uint16_t most_mv_[joint_count] = {};
 };
 
 // The pitch joints carry what the cosine of the pitch says.
 inline int16_t JointGuard::gravity_mv(uint8_t joint, const Gravity& gravity) {
-  if (joint != 1 && joint != 2) return 0;
+  if (!may_fall(joint)) return 0;
   const auto pitch = static_cast<int16_t>(gravity.pitch_1 + gravity.pitch_2);
   auto volts =
       static_cast<int16_t>(signal_chain::cosine(pitch) * (joint == 1 ? gravity.link_2 : gravity.link_2_at_joint_2));

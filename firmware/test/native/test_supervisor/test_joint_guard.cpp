@@ -64,12 +64,12 @@ TEST_CASE("a stuck joint is pushed with half as much again as starts it, then ge
 TEST_CASE("a joint that is let go gets all back step by step, after a stop, too") {
   Stuck arm(0, 0);
   REQUIRE(arm.look(0, 400, 8, 1) == 0);
-  CHECK(arm.look(0, 25, 0, -1) == doctest::Approx(25 * 0.128));  // the reference has come back
-  CHECK(std::isinf(arm.look(0, 250, 0, -1)));
+  CHECK(arm.look(0, 25, 0, -1) == doctest::Approx(25 * 0.064));  // the reference has come back
+  CHECK(std::isinf(arm.look(0, 500, 0, -1)));
   REQUIRE(arm.look(0, 400, 8, 1) == 0);
   arm.supervisor.stop();
   REQUIRE(arm.supervisor.enable(0, {}, {}).refusal == NackCode::none);
-  CHECK(arm.look(0, 25, 0, -1) == doctest::Approx(25 * 0.128));
+  CHECK(arm.look(0, 25, 0, -1) == doctest::Approx(25 * 0.064));
 }
 
 TEST_CASE("a joint that is held back gets what gravity takes at its pitch, up, and nothing down") {
