@@ -1,4 +1,4 @@
-"""Deviations that people read hold what the readings leave open, and what the arm file's masses and lengths may be off."""
+"""Deviations hold what the readings leave open, and what the arm file's masses and lengths may be off."""
 
 from __future__ import annotations
 

@@ -112,6 +112,7 @@ class Search:
             before = self.best
             for number, turn in enumerate(TURNS):
                 self._consider_rivals(turn, number)
+                self._consider_softer()
             if self.best is before:
                 break
         if self.loops:
@@ -156,13 +157,30 @@ class Search:
                 return
             left = [order for order in left if self._may_follow(order)]
 
+    def _consider_softer(self) -> None:
+        """Look for soft teeth again where the model has found play since: play hides the swings."""
+        assert self.best is not None
+        kinds = self.best.kinds
+        if self.begin is None and kinds[-1] == "play" and "teeth" in kinds:
+            softer = self._soften(self.best)
+            if softer is not self.best:
+                self._consider(softer)
+
     def _fit_order(self, candidate: Candidate, order: str) -> Candidate:
         """Fit an order's quantities along with the others, those of gears from several starts."""
         if order != "backlash":
             return self._settle(self._fitted, candidate)
-        soft = with_soft_teeth(self._fitted, _with_values(candidate, SWINGING), self.logs)
-        starts = [_with_values(candidate, gear) for gear in GEARS]
-        return self._fit_best([candidate, *starts, *([] if soft is None else [soft])])
+        return self._soften(self._fit_best([candidate, *(_with_values(candidate, gear) for gear in GEARS)]))
+
+    def _soften(self, stiff: Candidate) -> Candidate:
+        """Fit softer teeth, where joints seem to swing on them. A light link that knocks about in its gap looks like
+        that, too: what is held out decides.
+        """
+        soft = with_soft_teeth(self._fitted, stiff, _with_values(stiff, SWINGING), self.logs)
+        if soft is None:
+            return stiff
+        bent = self._fit_best([stiff, soft])
+        return bent if self._error(bent) < self._error(stiff) - self._limits.soft_teeth else stiff
 
     def _fit_begun(self, begin: Candidate) -> Candidate:
         """Fit the quantities of the model to begin with, from its values and from this search's own."""

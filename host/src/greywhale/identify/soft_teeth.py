@@ -17,17 +17,21 @@ from greywhale.identify.windows import WindowResidual
 SWINGS_HZ = (6.0, 7.5, 9.0, 11.0, 13.5, 16.5, 20.0, 25.0, 32.0)
 
 
-def with_soft_teeth(windows: WindowResidual, stiff: Candidate, logs: Sequence[Prepared]) -> Candidate | None:
-    """The model with teeth as soft as each joint shows them, from one with stiff ones; None where none are soft."""
+def with_soft_teeth(
+    windows: WindowResidual, found: Candidate, stiff: Candidate, logs: Sequence[Prepared]
+) -> Candidate | None:
+    """The model with soft teeth on joints that show them, by how else it would do with a `stiff` gear; None where none
+    does.
+    """
     tried = [stiff, *(_with_swing(stiff, logs, hertz) for hertz in SWINGS_HZ)]
     errors = np.array([np.mean(np.log1p(windows.misfit(one.plant, one.zero)), axis=0) for one in tried])
-    x = stiff.x.copy()
+    x, soft = found.x.copy(), False
     for place, joint in enumerate(windows.joints):
         best = int(np.argmin(errors[:, place]))
         if errors[best, place] < errors[0, place] - windows.limits.search.soft_teeth:
-            mine = [index for index, one in enumerate(stiff.space.parameters) if one.joint == joint]
-            x[mine] = tried[best].x[mine]
-    return replace(stiff, x=x) if (x != stiff.x).any() else None
+            mine = [index for index, one in enumerate(found.space.parameters) if one.joint == joint]
+            x[mine], soft = tried[best].x[mine], True
+    return replace(found, x=x) if soft else None
 
 
 def _with_swing(candidate: Candidate, logs: Sequence[Prepared], hertz: float) -> Candidate:
