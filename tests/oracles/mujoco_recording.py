@@ -20,6 +20,7 @@ from greywhale.files.trajectory import Trajectory
 from greywhale.fuzzy.settings import JointSettings
 from greywhale.protocol.firmware import ANGLE_LSB, JOINTS
 from greywhale.protocol.table import ParameterTable
+from tools.support.foreign_gears import Gears, with_rotors
 
 STEP_S = 1e-4
 STEPS = 10  # of MuJoCo in a tick of 1 ms
@@ -60,12 +61,14 @@ def record(
     noise_v: float,
     seed: int,
     play: float = 0.0,
+    gears: Gears | None = None,
 ) -> Log:
     """Play `motion` (rad) on MuJoCo's arm and write the log `path` from 1.5 s after the motors went on.
 
-    The joints drag their potentiometers along with `play` (rad) to either side.
+    The joints drag their potentiometers along with `play` (rad) to either side. With `gears` the motors, and with them
+    armature and friction, are apart from the joints.
     """
-    model = mujoco.MjModel.from_xml_string(mjcf(arm))
+    model = mujoco.MjModel.from_xml_string(mjcf(arm) if gears is None else with_rotors(arm))
     model.dof_solref[:], model.dof_solimp[:] = USUAL_SOFTNESS
     model.opt.timestep = STEP_S
     model.opt.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
@@ -75,8 +78,9 @@ def record(
     ticks = int(motion.time_s[-1] * 1000)
     leader = np.column_stack([np.interp(np.arange(ticks) / 1000, motion.time_s, angles) for angles in motion.angles.T])
     leader = np.round(np.vstack([np.tile(leader[:1], (before, 1)), leader]) / ANGLE_LSB).astype(np.int16)
-    data.qpos[:] = leader[0] * ANGLE_LSB
-    wiper = data.qpos.copy()
+    joints = data.qpos[:JOINTS]
+    data.qpos[:] = np.resize(leader[0] * ANGLE_LSB, model.nq)
+    wiper = joints.copy()
     board = Board(table)
     noise = noise_v / 5.0 * 1024.0
     counts = np.zeros((len(CONVERSIONS), JOINTS))
@@ -87,9 +91,11 @@ def record(
                 if step == NEW_DUTY:
                     data.ctrl[:] = board.volts
                 if step in CONVERSIONS:
-                    wiper = np.clip(wiper, data.qpos - play, data.qpos + play)
+                    wiper = np.clip(wiper, joints - play, joints + play)
                     ideal = (wiper / TRACK + 0.5) * 1024.0
                     counts[CONVERSIONS.index(step)] = np.floor(ideal + noise * random.standard_normal(JOINTS))
+                if gears is not None:
+                    data.qfrc_applied[:] = gears.pushes(data.qpos, data.qvel)
                 mujoco.mj_step(model, data)
             board.tick(target, counts)
             if tick >= before:

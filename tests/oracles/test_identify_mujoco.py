@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
+import mujoco
 import numpy as np
 import pytest
 
@@ -12,9 +13,11 @@ sys.path.insert(0, str(Path(__file__).parent))
 from mujoco_recording import record
 
 from greywhale.arm import ArmParameters
+from greywhale.arm.plants import columns
 from greywhale.files.arm import load_arm
-from greywhale.identify import IdentificationResult, identify
-from greywhale.loop import human_reaches
+from greywhale.identify import IdentificationResult, bootstrap, identify
+from greywhale.loop import human_reaches, multi_steps
+from tools.support.foreign_gears import Gears, inertia_of_joints
 from tools.support.recordings import random_arm, table_of
 
 SECONDS = 15.0
@@ -80,6 +83,27 @@ def test_play_at_the_potentiometers_is_found_and_explained(with_play: Identifica
     plays = [found[f"joint{joint}.play"] for joint in range(4)]
     assert np.median(plays) == pytest.approx(PLAY_RAD, rel=0.15)
     assert plays == pytest.approx([PLAY_RAD] * 4, rel=0.35)
+
+
+SWINGS_HZ = np.array([60.0, 12.0, 10.0, 60.0])  # of each joint on its teeth, its motor held
+
+
+def test_teeth_that_bend_are_found(arm: ArmParameters, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The pitch joints swing on their teeth; a fit from stiff ones would end at stiff ones."""
+    monkeypatch.setattr(bootstrap, "LOGS", 0)  # no interval is looked at
+    carried = inertia_of_joints(mujoco, arm, np.array([0.0, 0.4, 0.0, 0.0]))
+    turning = 2.0 * np.pi * SWINGS_HZ
+    gears = Gears(np.zeros(4), carried * turning**2, 2.0 * 0.05 * carried * turning)
+    table = table_of(NAMES[0])
+    logs = [
+        record(arm, motion, tmp_path / f"{seed}.csv", table, 0.0024, seed, 0.0, gears)
+        for seed, motion in ((36, multi_steps()), (37, human_reaches(37, 8.0)))
+    ]
+    outcome = identify(logs[:1], load_arm("white_box"), validate=logs[1:], tables=[table])
+    assert "backlash" in outcome.found.order
+    assert outcome.verdicts[1].improvement > 0.95
+    found = outcome.plant[columns("stiffness")]
+    assert found[[1, 2]] == pytest.approx(gears.stiffness[[1, 2]], rel=0.3)
 
 
 def test_standard_deviations_are_honest_here_too(outcome: IdentificationResult, arm: ArmParameters) -> None:

@@ -177,9 +177,7 @@ class MuJoCoPlant:
         else:
             self._model.opt.timestep = dt / SUBSTEPS
             for _ in range(SUBSTEPS):
-                angles, speeds = data.qpos.reshape(2, JOINTS), data.qvel.reshape(2, JOINTS)
-                torque = gears.torque(angles[1] - angles[0], speeds[1] - speeds[0])
-                data.qfrc_applied[:] = np.concatenate([torque, -torque])
+                data.qfrc_applied[:] = gears.pushes(data.qpos, data.qvel)
                 self._engine.mj_step(self._model, data)
         # The joint drags the wiper along at either end of the play.
         angles = data.qpos[:JOINTS]

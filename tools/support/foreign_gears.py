@@ -35,6 +35,12 @@ class Gears:
         pushed = self.stiffness * beyond + np.where(beyond != 0.0, self.damping * speed, 0.0)
         return np.asarray(np.where(pushed * bend > 0.0, pushed, 0.0))  # teeth do not pull
 
+    def pushes(self, places: Floats, speeds: Floats) -> Floats:
+        """The torques (8,) on joints and motors at these places (rad) and speeds (rad/s), the joints' first."""
+        (joints, motors), (joint_speeds, motor_speeds) = places.reshape(2, JOINTS), speeds.reshape(2, JOINTS)
+        torque = self.torque(motors - joints, motor_speeds - joint_speeds)
+        return np.concatenate([torque, -torque])
+
 
 @dataclass(frozen=True)
 class Drivers:
