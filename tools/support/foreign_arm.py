@@ -240,7 +240,7 @@ def commissioned(bench: RunningBench, folder: Path, unseen: Mapping[str, Traject
 
 
 def tuned(bench: RunningBench, folder: Path, unseen: Mapping[str, Trajectory]) -> tuple[Learnt, Run]:
-    """What `tune` alone gives, from practice as `greywhale demo` makes it, and how the arm follows with it.
+    """Tune alone, from practice as `greywhale demo` makes it: its result, and how the arm follows with it.
 
     The board has the controllers from before again when this ends.
     """

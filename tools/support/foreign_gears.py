@@ -30,7 +30,7 @@ class Gears:
     damping: Floats
 
     def torque(self, bend: Floats, speed: Floats) -> Floats:
-        """What the motors' sides feel, N m, where they are `bend` (rad) ahead of their joints at `speed` (rad/s)."""
+        """Torque on the motors' sides, N m, where they are `bend` (rad) ahead of their joints at `speed` (rad/s)."""
         beyond = np.sign(bend) * np.maximum(np.abs(bend) - self.half_gap, 0.0)
         pushed = self.stiffness * beyond + np.where(beyond != 0.0, self.damping * speed, 0.0)
         return np.asarray(np.where(pushed * bend > 0.0, pushed, 0.0))  # teeth do not pull
@@ -44,7 +44,7 @@ class Gears:
 
 @dataclass(frozen=True)
 class Drivers:
-    """What becomes of a voltage before it turns a motor, (4,) each: the volts lost in either direction, and cogging."""
+    """A voltage on its way to a motor, (4,) each: the volts lost in either direction, and cogging."""
 
     lost_up: Floats
     lost_down: Floats
@@ -74,7 +74,7 @@ def with_rotors(parameters: ArmParameters) -> str:
 
 
 def inertia_of_joints(engine: Any, parameters: ArmParameters, pose: Floats) -> Floats:
-    """What each joint carries in a pose, kg m^2, without its motor."""
+    """Inertia that each joint carries in a pose, kg m^2, without its motor."""
     model = engine.MjModel.from_xml_string(mjcf(parameters))
     model.dof_armature[:] = 0.0
     data = engine.MjData(model)
