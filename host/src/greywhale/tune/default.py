@@ -114,11 +114,9 @@ class DefaultMethod:
         self.margins = self._margins(searching=True)
         self.margins_before = self.judging_margins.check(self.start)
         self.standard = Standard.of(self.margins_before, self.table.supply_v, self.limits.quiet, self.limits)
-        hunts = hunting_everywhere(self.margins_before)
         edge_s, training = self.limits.following.abrupt_s, self.limits.training
         self.abrupt = abrupt_moves(model.arm, self.table, model.plants, edge_s, task.seed + JUDGING_SEED, training)
-        common = (self.judging, self.abrupt, self.start, hunts)
-        self.before = {exact: FollowingBefore.of(*common, exact, self.limits) for exact in (False, True)}
+        self._before: dict[bool, FollowingBefore] = {}
         self.found = SearchState.nothing(self.start)
 
     def _motions(self, seed: int) -> tuple[TrainingMotion, ...]:
@@ -186,6 +184,13 @@ class DefaultMethod:
         restless = penalty(self.margins.unrest(controllers), self.standard.quiet_v, self.limits)
         return self.objective.costs(controllers) + restless
 
+    def following_before(self, exact: bool = False) -> FollowingBefore:
+        """The following of the controllers from before, worked out once where it is wanted."""
+        if exact not in self._before:
+            hunts = hunting_everywhere(self.margins_before)
+            self._before[exact] = FollowingBefore.of(self.judging, self.abrupt, self.start, hunts, exact, self.limits)
+        return self._before[exact]
+
     def judge_costs(self, controllers: Controllers, exact: bool = False) -> Floats:
         """Work out the costs (n, 4) on all plants, with other noise; `exact`: in the bench's own arithmetic."""
         found = self.judging.follow(controllers, exact)
@@ -195,7 +200,7 @@ class DefaultMethod:
         if self.limits.by_the_arm:
             return costs + limits.unrest_weight_on_arm * restless
         kept = (controllers == self.start).all(axis=2)
-        before = self.before[exact]
+        before = self.following_before(exact)
         followed = costs + np.where(kept, 0.0, before.price(found, controllers))
         short: Flags = self.standard.falls_short(unrest, kept) | (before.outweighs(followed) & ~kept)
         return followed + restless + limits.unfit_cost * short
@@ -257,7 +262,7 @@ class DefaultMethod:
     def _prices(self, controllers: Controllers) -> Floats:
         """The prices (4,) of what one combination follows less closely than before."""
         rows = controllers[None]
-        prices: Floats = self.before[False].price(self.judging.follow(rows), rows)[0]
+        prices: Floats = self.following_before().price(self.judging.follow(rows), rows)[0]
         return prices
 
     def _judge_exactly(self, after: Controllers, judge: Judge, judge_exactly: Judge) -> tuple[_Chosen, Flags]:
@@ -283,7 +288,7 @@ class DefaultMethod:
             unrest = self.margins.unrest(controllers)
             restless = penalty(unrest, self.standard.quiet_v, self.limits, strict=True)
             found = self.objective.follow(controllers)
-            return self.objective.costs_of(found) + restless + self.before[False].price(found, controllers)
+            return self.objective.costs_of(found) + restless + self.following_before().price(found, controllers)
 
         search = LockstepSearch(costs, SearchState.nothing(rows))
         search.try_again(AGAIN.name)

@@ -112,5 +112,7 @@ class FollowingBefore:
     def _errors(self, found: FollowingErrors, controllers: Controllers) -> Floats:
         """(n, classes, 4) on the estimate."""
         one = self.objective
-        sharp = follow([self.abrupt], one.plants[:1], controllers, exact=self.exact, threads=one.threads)
+        sharp = follow(
+            [self.abrupt], one.plants[:1], controllers, exact=self.exact, threads=one.threads, limits=one.limits
+        )
         return np.concatenate([found.error[:, 0], sharp.error[:, 0]], axis=1)
