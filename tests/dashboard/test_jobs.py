@@ -174,7 +174,7 @@ def test_each_word_of_the_forms_belongs_to_an_argument() -> None:
         *("log", "motion", "firmware"), *(kind.name.lower() for kind in Kind)
     }  # fmt: skip
     (said,) = (one["help"] for one in VERBS["record"]["arguments"] if one["name"] == "save_motion")
-    assert said.startswith('With "Let greywhale lead the arm": also write')
+    assert said.startswith('With "Let greywhale lead the arm" or "Visits of each pose from either side": also write')
 
 
 def test_the_form_of_an_arm_asks_what_follows_and_ends_as_an_arm_file(desk: Desk, tmp_path: Path) -> None:

@@ -86,7 +86,7 @@ def _main_left_out() -> Iterator[None]:
 @contextlib.contextmanager
 def side_jobs(report: NotedProgress, here: bool = False) -> Iterator[SideJobs]:
     """One process for all jobs; leaving it ends them at once, wherever they are. `here`: no process, for tests."""
-    ours, theirs = multiprocessing.get_context("spawn").Pipe()
+    ours, theirs = multiprocessing.Pipe()
     workers = SerialWorkers() if here else LocalWorkers(1, partial(_take, theirs))
     with ours, theirs, left_at_once(workers) as executor:
         yield SideJobs(executor, ours, report)
