@@ -1,7 +1,8 @@
 // What a joint's motor may get until the next look at the joint: all, a gentle push, or what holds it against gravity.
-// All comes back step by step. At once it would throw the arm after a hand that lets go, and beat against a hand that
-// gives way like a spring: pushed back by a motor that has all, held back, pressed away, and again. A pitch joint
-// that goes away from its reference may be falling, and gets it eight times as fast.
+// After a short hold, as an abrupt move may bring one, all comes back at once. After a long one, or many in a row, it
+// comes back step by step: at once it would throw the arm after a hand that lets go, and beat against a hand that gives
+// way like a spring: pushed back by a motor that has all, held back, pressed away, and again. A pitch joint that goes
+// away from its reference may be falling, and gets it eight times as fast.
 #pragma once
 #include <signal_chain/cosine.h>
 #include <stdint.h>
@@ -24,11 +25,20 @@ class JointGuard {
     supervisor.look_at_joint(joint, seen, limits);
     const Hold hold = supervisor.hold(joint);
     uint16_t& most = most_mv_[joint];
-    if (hold > Hold::free) most = held_mv(hold, seen, limits);
-    else if (hold == Hold::unknown || most >= all_mv) most = UINT16_MAX;
-    else
-      most = static_cast<uint16_t>(most +
-                                   (may_fall(joint) && supervisor.goes(joint, seen.error < 0) ? 8 : 1) * comes_back_mv);
+    uint8_t& held = held_[joint];
+    if (hold == Hold::unknown) held = 0;
+    if (hold > Hold::free) {
+      most = held_mv(hold, seen, limits);
+      held = held > UINT8_MAX - held_longer ? UINT8_MAX : static_cast<uint8_t>(held + held_longer);
+      return;
+    }
+    if (held >= held_long && most < all_mv) {
+      const bool falls = may_fall(joint) && supervisor.goes(joint, seen.error < 0);
+      most = static_cast<uint16_t>(most + (falls ? 8 : 1) * comes_back_mv);
+      return;
+    }
+    most = UINT16_MAX;
+    if (held > 0) --held;
   }
   uint16_t most_mv(uint8_t joint) const { return most_mv_[joint]; }
 
@@ -39,8 +49,11 @@ class JointGuard {
 
   static constexpr uint16_t all_mv = 32767;      // more than any supply
   static constexpr uint16_t comes_back_mv = 64;  // a look, 16 V/s
+  // A look that holds a joint counts four of those that do not; 0.1 s without a look in between is long.
+  static constexpr uint8_t held_longer = 4, held_long = 100;
 
   uint16_t most_mv_[joint_count] = {};
+  uint8_t held_[joint_count] = {};  // of late, in looks that do not hold
 };
 
 // The pitch joints carry what the cosine of the pitch says.
