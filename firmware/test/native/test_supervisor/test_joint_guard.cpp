@@ -64,7 +64,8 @@ TEST_CASE("a stuck joint is pushed with half as much again as starts it, then ge
 TEST_CASE("a joint that is held for a moment gets all back at once, unless that comes again and again") {
   Stuck arm(0, 0);
   const auto hold_and_free = [&arm] {
-    while (std::isinf(arm.look(0, 1, 8, 1))) {}
+    while (std::isinf(arm.look(0, 1, 8, 1))) {
+    }
     arm.look(0, 9, 8, 1);
     return arm.look(0, 1, 0, -1);
   };

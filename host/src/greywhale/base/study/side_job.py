@@ -11,9 +11,8 @@ import sys
 from collections.abc import Callable, Iterator
 from concurrent.futures import BrokenExecutor, Executor, Future
 from functools import partial
-from multiprocessing.connection import Connection
 from types import ModuleType
-from typing import Generic, TypeVar
+from typing import Any, Generic, Protocol, TypeVar
 
 from greywhale.base.errors import UserError
 from greywhale.base.study.workers import LocalWorkers, SerialWorkers, left_at_once
@@ -22,13 +21,22 @@ from greywhale.base.types import NotedProgress
 Result = TypeVar("Result")
 LOOK_S = 0.05  # how often a report, the end or Ctrl-C is looked for
 
-_lines: list[Connection] = []  # in the process of the work: the one to whoever waits for it
+
+class Line(Protocol):
+    """One end of a line between two processes, whatever the system makes it of."""
+
+    def send(self, obj: Any, /) -> None: ...
+    def recv(self) -> Any: ...
+    def poll(self, timeout: float = 0.0, /) -> bool: ...
+
+
+_lines: list[Line] = []  # in the process of the work: the one to whoever waits for it
 
 
 class SideJob(Generic[Result]):
     """Work that tells its progress, which nobody sees until somebody waits for the result."""
 
-    def __init__(self, number: int, future: Future[Result], line: Connection, report: NotedProgress) -> None:
+    def __init__(self, number: int, future: Future[Result], line: Line, report: NotedProgress) -> None:
         self._number = number
         self._future = future
         self._line = line
@@ -59,7 +67,7 @@ class SideJob(Generic[Result]):
 class SideJobs:
     """Begins jobs, one after the other. What a job is and gives must be fit to be pickled."""
 
-    def __init__(self, executor: Executor, line: Connection, report: NotedProgress) -> None:
+    def __init__(self, executor: Executor, line: Line, report: NotedProgress) -> None:
         self._executor = executor
         self._line = line
         self._report = report
@@ -92,7 +100,7 @@ def side_jobs(report: NotedProgress, here: bool = False) -> Iterator[SideJobs]:
         yield SideJobs(executor, ours, report)
 
 
-def _take(line: Connection) -> None:
+def _take(line: Line) -> None:
     _lines.append(line)
 
 
