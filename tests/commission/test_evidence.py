@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from greywhale.arm.plants import column, plant_row
-from greywhale.commission.evidence import failing_plants, to_fit, to_validate
+from greywhale.commission.evidence import Evidence, failing_plants, to_fit, to_validate
 from greywhale.commission.journal import CommissioningJournal
 from greywhale.commission.motions import check_motion
 from greywhale.commission.trials import Trials
@@ -47,8 +47,8 @@ def test_an_arm_that_rests_gives_no_such_plant(trials: Trials, rig: SimulatedRig
 
 def test_the_best_trials_are_fitted_and_the_first_recording_validates(trials: Trials, rig: SimulatedRig) -> None:
     before = play_before(trials, rig)
-    excite = read_log(before.path)
-    assert to_fit(excite, trials).logs == (excite,)
+    excite = Evidence((read_log(before.path),), (trials.table,))
+    assert to_fit(excite, trials) == excite
     for joints in ([0], [1], [0, 1], [2]):
         play(trials, rig, stiffer(trials, joints, BETTER))
     fit, validate = to_fit(excite, trials), to_validate(trials)

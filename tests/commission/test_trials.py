@@ -4,16 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from greywhale.base.errors import UserError
-from greywhale.commission.arm_on_port import ArmOnPort
+from greywhale.commission.arm_on_port import ArmOnPort, PlayedMotion
+from greywhale.commission.limits import COMMISSIONING_LIMITS
 from greywhale.commission.result import CommissioningResult
 from greywhale.commission.trials import Trial, Trials
+from greywhale.files.trajectory import Trajectory
 from greywhale.loop.controllers import controllers_of
 from greywhale.measure.limits import SWING_LIMITS
+from greywhale.protocol.table import ParameterTable
 from tests.commission.simulated import KD, KI, KP, SimulatedRig
 
 BETTER, WILD = 2.0, 40.0  # times the stiffness of before
@@ -122,3 +126,38 @@ def test_controllers_from_before_that_the_board_stops_are_refused(trials: Trials
 
     with pytest.raises(UserError, match="ended early: the board stopped"):
         wild.play_before(lambda: Stopping(rig.arm))  # type: ignore[arg-type, return-value]
+
+
+class SwingingRig(SimulatedRig):
+    """Its joint 1 swings until the board stops it, where it has more voltage than `calm_mv`."""
+
+    calm_mv = 0
+
+    def play(self, motion: Trajectory, path: Path, table: ParameterTable, **options: bool) -> PlayedMotion:
+        played = super().play(motion, path, table, **options)
+        swings = table["joint1.ku_mv"] > self.calm_mv
+        return replace(played, stopped="the board stopped", joint=1, swung=True) if swings else played
+
+
+def test_a_joint_that_swings_is_measured_with_less_voltage_and_so_when_it_goes_on(
+    trials: Trials, rig: SimulatedRig
+) -> None:
+    table = trials.table
+    swinging = SwingingRig(rig.arm)
+    swinging.calm_mv = table["joint1.ku_mv"] // 4
+    before = trials.play_before(lambda: swinging)  # type: ignore[arg-type, return-value]
+    assert before.whole
+    assert trials.softened == [1, 1]
+    assert before.table.with_raw({f"joint1.{key}": table[f"joint1.{key}"] for key in ("ki", "ku_mv")}) == table
+    assert before.table["joint1.ku_mv"] == swinging.calm_mv
+    again = Trials(trials.journal, trials.check, table)
+    assert again.play_before(no_arm).as_dict() == before.as_dict()
+    assert (
+        "swung until the board stopped it; with 1/4 of that voltage" in CommissioningResult(trials, (), before).text()
+    )
+
+
+def test_a_joint_that_swings_however_soft_it_is_is_refused(trials: Trials, rig: SimulatedRig) -> None:
+    with pytest.raises(UserError, match="ended early: the board stopped; narrow the --range, or upload calmer"):
+        trials.play_before(lambda: SwingingRig(rig.arm))  # type: ignore[arg-type, return-value]
+    assert trials.softened == [1] * COMMISSIONING_LIMITS.motion.softer_starts

@@ -17,7 +17,7 @@ from greywhale.base.types import Floats, Progress
 from greywhale.board.device import Device, hold_ctrl_c
 from greywhale.board.hunting_stop import Hunting, HuntingStop
 from greywhale.board.record import BUSY_LEASE_MS, pose_of, record_led
-from greywhale.board.stream import OF_THE_MOTION, LeaseLostError
+from greywhale.board.stream import OF_SWINGS, OF_THE_MOTION, LeaseLostError
 from greywhale.board.upload import read_parameters, run_set, upload_set
 from greywhale.files.log import Log, read_evidence
 from greywhale.files.trajectory import Trajectory
@@ -32,11 +32,14 @@ logger = logging.getLogger(__name__)
 
 @dataclass(frozen=True)
 class PlayedMotion:
-    """A log, and why it ended early: `joint` is the one that the board or this host stopped for, None where unknown."""
+    """A log, and why it ended early: `joint` is the one that the board or this host stopped for, None where unknown;
+    `swung` is True where it did what a joint does whose swings grow.
+    """
 
     log: Log
     stopped: str = ""
     joint: int | None = None
+    swung: bool = False
 
 
 class ArmOnPort:
@@ -114,7 +117,7 @@ class ArmOnPort:
             )  # fmt: skip
         except Hunting as hunting:
             self.device.telemetry(0)
-            return PlayedMotion(read_evidence(path), f"joint {hunting.joint} hunted", hunting.joint)
+            return PlayedMotion(read_evidence(path), f"joint {hunting.joint} hunted", hunting.joint, swung=True)
         except UserError:
             status = self._status()
             if status is None or status.fault not in OF_THE_MOTION or not path.exists():
@@ -123,7 +126,8 @@ class ArmOnPort:
             self.device.ask(schema.ClearFaultRequest())
             where = status.fault_where if status.fault_where < len(table.controllers) else None
             whose = "" if where is None else f" (joint {where})"
-            return PlayedMotion(read_evidence(path), f"the board stopped: {status.fault.description}{whose}", where)
+            told = f"the board stopped: {status.fault.description}{whose}"
+            return PlayedMotion(read_evidence(path), told, where, status.fault in OF_SWINGS)
         return PlayedMotion(read_evidence(path))
 
     def _status(self) -> schema.StatusReply | None:

@@ -29,10 +29,11 @@ class Evidence:
     tables: tuple[ParameterTable, ...]
 
 
-def to_fit(excite: Log, trials: Trials) -> Evidence:
+def to_fit(excite: Evidence, trials: Trials) -> Evidence:
     """The excitation, and the best trials that were played to their end."""
     best = _whole(trials)[: trials.judging.evidence.fitted_trials]
-    return Evidence((excite, *(read_evidence(one.path) for one in best)), (trials.table, *(one.table for one in best)))
+    logs, tables = (read_evidence(one.path) for one in best), (one.table for one in best)
+    return Evidence((*excite.logs, *logs), (*excite.tables, *tables))
 
 
 def to_validate(trials: Trials) -> Evidence:

@@ -71,7 +71,7 @@ def _is_step(value: dict[str, Any]) -> bool:
 
 KIND = Kind(
     mark="greywhale_commission",
-    version=4,
+    version=5,
     noun="journal",
     subject="commissioning",
     anew="begin anew in another folder",

@@ -19,6 +19,12 @@ class MotionLimits:
     first_again_rad: float = limit(0.4, "rad", "the first motion once more, for joints that friction held")
     first_edge_s: float = limit(0.5, "s", "an edge of the first motion is slow")
     first_hold_s: float = limit(0.7, "s", "each of its stops is long enough to arrive")
+    softer_starts: int = limit(
+        3,
+        "times",
+        "so often a joint that swings until the board stops it gets half the voltage of its controller from before: "
+        "what cannot be led along the excitation and the check cannot be known",
+    )
     least_way_share: float = limit(
         0.25, "of the leader's way", "a joint that went less, or the other way, does not move freely"
     )

@@ -11,12 +11,13 @@ import numpy as np
 from greywhale.arm.parameters import JOINT_NAMES, ArmParameters
 from greywhale.base.errors import counted
 from greywhale.base.telling import Column, Motions, Part, Row, Sentences, Table, Telling
-from greywhale.base.types import Crc
+from greywhale.base.types import Crc, PerJoint
 from greywhale.commission.learn import LearntController
 from greywhale.commission.measures import Measures, PartFacts, measure
 from greywhale.commission.motions import PARTS, Check
 from greywhale.commission.trials import Trial, TrialFacts, Trials
 from greywhale.loop.led_model import predict
+from greywhale.protocol.firmware import JOINTS
 
 
 class RoundFacts(TypedDict):
@@ -32,6 +33,7 @@ class ForeseenFacts(TrialFacts):
 
 class CommissioningFacts(TypedDict):
     improved: bool  # whether the board ends with other controllers than before
+    softened: PerJoint[int]  # how often each joint's voltage from before was halved: it swung until the board stopped
     best: str  # name of the trial that the board ends with
     score: float  # what it leaves of the error from before in what a hand leads, all joints together
     tuned_score: float | None  # the same of the first round's tuned set, before the search on the model
@@ -110,6 +112,7 @@ class CommissioningResult:
         tuned = self.tuned
         return {
             "improved": self.improved,
+            "softened": [self.trials.softened.count(joint) for joint in range(JOINTS)],
             "best": self.best.name,
             "score": round(self.best.score, 4),
             "tuned_score": None if tuned is None else round(tuned.score, 4),
@@ -152,7 +155,8 @@ class CommissioningResult:
     def headline(self) -> str:
         """A sentence that names the set that the board runs now, and the joints that kept their controllers."""
         if not self.improved:
-            return "No set passed on every joint: the controllers from before stay on the board."
+            softer = ", softened" if self.trials.softened else ""
+            return f"No set passed on every joint: the controllers from before{softer} stay on the board."
         kept = [f"joint {joint} ({JOINT_NAMES[joint]})" for joint in self._kept]
         rest = f"; {' and '.join(kept)} kept the controller from before, since nothing better was found" if kept else ""
         return f"The board now runs and stores {self.best.name}{rest}."
@@ -168,12 +172,20 @@ class CommissioningResult:
         played = len(self.trials.done) - 1
         tried = f"{counted(played, 'set')} of controllers tried on the arm in {counted(len(self.rounds), 'round')}."
         return [
-            Sentences([self.headline, tried, *self._tell_tuned()]),
+            Sentences([self.headline, tried, *self._tell_softened(), *self._tell_tuned()]),
             *(self._tell_changes() if self.improved else ()),
         ]
 
     def text(self) -> str:
         return Telling(self.tell()).text()
+
+    def _tell_softened(self) -> Iterator[str]:
+        for joint in sorted(set(self.trials.softened)):
+            share = 2 ** self.trials.softened.count(joint)
+            yield (
+                f"With its controller from before joint {joint} ({JOINT_NAMES[joint]}) swung until the board stopped "
+                f'it; with 1/{share} of that voltage it was measured, and that is what "before" means here.'
+            )
 
     def _tell_tuned(self) -> Iterator[str]:
         """The score beside that of the tuned set, which a commissioning is to beat."""

@@ -33,7 +33,7 @@ from greywhale.commission.search import CheckOnModel
 from greywhale.commission.trials import Trial, Trials
 from greywhale.files.arm import load_arm
 from greywhale.files.leader import load_leader, save_leader
-from greywhale.files.log import Log, read_evidence
+from greywhale.files.log import read_evidence
 from greywhale.files.parameter_file import load as load_parameters
 from greywhale.files.parameter_file import save as save_parameters
 from greywhale.identify.excite import design
@@ -236,18 +236,20 @@ class _Commissioning:
         path = self.journal.path(EXCITING)
         return partial(_design, self.options, self.nominal, joint_range.pose, table, path)
 
-    def _excite(self, connect: Callable[[], ArmOnPort]) -> Log:
-        """The log of that motion."""
+    def _excite(self, connect: Callable[[], ArmOnPort]) -> Evidence:
+        """The log of that motion, and what the board ran in it."""
         self.stage = "excite"
-        path, table = self.journal.path("excite.csv"), self.trials.table
-        if self.journal.get("excite") is None:
+        path, trials = self.journal.path("excite.csv"), self.trials
+        facts = self.journal.get("excite")
+        if facts is None:
             if self.options.model is not None:
-                self._designing(self.joint_range, table)(self._report)
-            played = connect().play(load_leader(self.journal.path(EXCITING)), path, table, patient=True, watched=False)
-            if played.stopped:
-                raise AnewError(f"the arm cannot be excited: {played.stopped}; narrow the --range.")
-            self.journal.note("excite", {"log": path.name})
-        return read_evidence(path)
+                self._designing(self.joint_range, trials.table)(self._report)
+            motion = load_leader(self.journal.path(EXCITING))
+            while (played := connect().play(motion, path, trials.table, patient=True, watched=False)).stopped:
+                trials.soften(played, f"the arm cannot be excited: {played.stopped}; narrow the --range.")
+            facts = {"log": path.name, "controllers": controllers_of(trials.table).tolist()}
+            self.journal.note("excite", facts)
+        return Evidence((read_evidence(path),), (trials.table.with_controllers(facts["controllers"]),))
 
     def _try(self, connect: Callable[[], ArmOnPort], learnt: learn.LearntController) -> None:
         """Try a round's controllers on the arm, and then others in the place of those that fail or follow poorly."""

@@ -24,6 +24,7 @@ from greywhale.protocol.firmware import JOINTS
 from greywhale.protocol.table import CONTROLLER_COLUMNS, ParameterTable
 
 BEFORE = "before"
+GAINS = [CONTROLLER_COLUMNS.index(name) for name in ("ki", "ku_mv")]
 _COLUMNS = len(CONTROLLER_COLUMNS)
 
 
@@ -107,8 +108,11 @@ class Trials:
         self.check = check
         self.table = before
         self.done: list[Trial] = []
+        self.softened: list[int] = []  # joints whose controller from before was halved, in that order
         self.foresight: Foresight | None = None  # of the model of this round
         self.others: dict[str, int] = {}  # raw, what the model says besides controllers, for the trials to come
+        while (facts := journal.get(self._next_softening)) is not None:
+            self._halve(facts["joint"])
 
     @property
     def before(self) -> Trial:
@@ -118,14 +122,37 @@ class Trials:
         """The board's table with these controllers, for a trial to come."""
         return self.table.with_controllers(rows).with_raw(self.others)
 
+    @property
+    def _next_softening(self) -> str:
+        return f"softer-{len(self.softened) + 1}"
+
+    def _halve(self, joint: int) -> None:
+        rows = controllers_of(self.table).copy()
+        rows[joint, GAINS] //= 2
+        self.table = self.table.with_controllers(rows)
+        self.softened.append(joint)
+
+    def soften(self, played: PlayedMotion, refusal: str) -> None:
+        """Halve the voltage and the integral of the joint that swung, in what counts as before from now on. Raises
+        AnewError with the refusal where a joint did not swing, or swings however soft it is.
+        """
+        joint, most = played.joint, self.judging.motion.softer_starts
+        if joint is None or not played.swung or self.softened.count(joint) >= most:
+            raise AnewError(refusal)
+        self.journal.note(self._next_softening, {"joint": joint})
+        self._halve(joint)
+
     def play_before(self, connect: Callable[[], ArmOnPort]) -> Trial:
-        """Play the check with the controllers from before; see `play`."""
-        trial = self._tried(connect, controllers_of(self.table), watched=False)
-        if trial.stopped:
-            raise AnewError(
+        """Play the check with the controllers from before; see `play` and `soften`."""
+        trial, played = self._tried(connect, controllers_of(self.table), watched=False)
+        while trial.stopped:
+            self.done.clear()
+            self.soften(
+                played,
                 f"with the controllers from before, the check ended early: {trial.stopped}; narrow the --range, or "
-                "upload calmer controllers first."
+                "upload calmer controllers first.",
             )
+            trial, played = self._tried(connect, controllers_of(self.table), watched=False)
         if not trial.measured.whole:
             raise AnewError(
                 "the check with the controllers from before cannot be measured, because this computer was late with "
@@ -135,13 +162,14 @@ class Trials:
 
     def play(self, connect: Callable[[], ArmOnPort], rows: Controllers) -> Trial:
         """Play the check with these controllers on the arm; where the journal has that trial, without connecting it."""
-        return self._tried(connect, rows, watched=True)
+        return self._tried(connect, rows, watched=True)[0]
 
-    def _tried(self, connect: Callable[[], ArmOnPort], rows: Controllers, watched: bool) -> Trial:
+    def _tried(self, connect: Callable[[], ArmOnPort], rows: Controllers, watched: bool) -> tuple[Trial, PlayedMotion]:
         name = self._next_name()
-        trial = self._judged(name, rows, *self._played(name, connect, rows, watched))
+        path, played = self._played(name, connect, rows, watched)
+        trial = self._judged(name, rows, path, played)
         self.done.append(trial)
-        return trial
+        return trial, played
 
     def _played(
         self, name: str, connect: Callable[[], ArmOnPort], rows: Controllers, watched: bool
@@ -157,7 +185,8 @@ class Trials:
                 )
             return path, PlayedMotion(read_evidence(path), facts["stopped"], facts["joint"])
         played = connect().play(self.check.motion, path, self.table_of(rows), watched=watched)
-        self.journal.note(name, {"controllers": rows.tolist(), "stopped": played.stopped, "joint": played.joint})
+        if self.done or not played.stopped:  # else it is made again, with softer controllers
+            self.journal.note(name, {"controllers": rows.tolist(), "stopped": played.stopped, "joint": played.joint})
         return path, played
 
     def ranked(self) -> list[Trial]:
