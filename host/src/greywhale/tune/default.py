@@ -202,7 +202,7 @@ class DefaultMethod:
         kept = (controllers == self.start).all(axis=2)
         before = self.following_before(exact)
         followed = costs + np.where(kept, 0.0, before.price(found, controllers))
-        short: Flags = self.standard.falls_short(unrest, kept) | (before.outweighs(followed) & ~kept)
+        short: Flags = self.standard.falls_short(unrest, kept) | (before.outweighs(costs) & ~kept)
         return followed + restless + limits.unfit_cost * short
 
     def _contenders(self) -> Controllers:
@@ -326,6 +326,7 @@ class DefaultMethod:
             after,
             model.arm.joints_in_use,
             task.threads,
+            self.limits.following,
         )
         task.report("judging", 1.0)
         return Judgement(

@@ -127,7 +127,16 @@ class PaperMethod:
             margins_before=margins_before,
             margins=margins_after,
             held_out=held_out,
-            worse=worse_followers(held_out, (), plant, task.before, best, task.model.arm.joints_in_use, task.threads),
+            worse=worse_followers(
+                held_out,
+                (),
+                plant,
+                task.before,
+                best,
+                task.model.arm.joints_in_use,
+                task.threads,
+                task.judging.following,
+            ),
         )
 
 

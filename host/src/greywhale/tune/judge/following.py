@@ -105,7 +105,7 @@ class FollowingBefore:
         return prices
 
     def outweighs(self, costs: Floats) -> Flags:
-        """True where a candidate follows no better than this on the whole, (n, 4); `costs` hold no price of unrest."""
+        """True where a candidate follows no better than this on the whole, (n, 4); `costs` hold no prices."""
         outweighed: Flags = (costs > self.judging.choice.joint_slack * self.cost) & ~self.hunts
         return outweighed
 
