@@ -28,7 +28,7 @@ def model(outcome: IdentificationResult, tmp_path_factory: pytest.TempPathFactor
 @pytest.mark.slow
 def test_row_0_is_the_estimate_and_no_row_depends_on_how_many_there_are(model: ArmParameters) -> None:
     plants = sampled_plants(model, 9, seed=4)
-    assert plants.shape == (9, 81)
+    assert plants.shape == (9, len(plant_row(model)))
     np.testing.assert_array_equal(plants[0], plant_row(model))
     np.testing.assert_array_equal(sampled_plants(model, 3, seed=4), plants[:3])
     np.testing.assert_array_equal(sampled_plants(model, 1), plants[:1])
@@ -64,9 +64,9 @@ def test_draws_have_the_covariance_of_the_file(model: ArmParameters, outcome: Id
             taken.append(np.log(plants[:, column(parameter.kind, parameter.joint)]) - torque)
         index = names.index(parameter.name)
         expected.append(index)
-        assert np.sqrt(outcome.found.covariance[index, index]) * outcome.estimates[index].value == pytest.approx(
-            outcome.estimates[index].deviation
-        )
+        drawn, read = np.sqrt(outcome.found.covariance[index, index]), outcome.estimates[index]
+        assert read.deviation is not None
+        assert drawn * read.value < 1.0001 * read.deviation, "people read the doubt about masses and lengths, too"
     wanted = outcome.found.covariance[np.ix_(expected, expected)]
     scale = np.sqrt(np.diag(wanted))
     np.testing.assert_allclose(
@@ -138,5 +138,5 @@ def test_rivals_take_every_third_row_and_the_draws_between_stay(
     facts = model.identification
     assert facts is not None
     short = model.model_copy(update={"identification": facts | {"rival": [{"order": "creep", "plant": [1.0]}]}})
-    with pytest.raises(UserError, match="a rival of .* has no plant of 81 numbers"):
+    with pytest.raises(UserError, match=f"a rival of .* has no plant of {len(other)} numbers"):
         sampled_plants(short, 4)

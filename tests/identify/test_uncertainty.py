@@ -17,10 +17,10 @@ def test_a_torque_is_no_surer_than_the_masses_that_it_lifts(recorded: Recorded, 
     """Alpha of a pitch joint follows the weight; what is measured in volts and seconds does not."""
     space = Space.of(hidden, (*MOTOR, "coulomb"), range(4))
     residual = WindowResidual([prepare(recorded.fit, 1)], hidden, range(4), every=8)
-    sure = uncertainty(residual, space, space.start(), range(4), links=True)
+    sure = uncertainty(residual, space, space.start(), range(4), to_read=True)
     plain = uncertainty(residual, space, space.start(), range(4))
     np.testing.assert_array_equal(sure.covariance, plain.covariance)
-    by_links = dict(zip(space.names, np.sqrt(np.diag(sure.links)), strict=True))
+    by_links = dict(zip(space.names, np.sqrt(np.diag(sure.besides)), strict=True))
     mass = IDENTIFICATION_LIMITS.uncertainty.mass_share / np.sqrt(3.0)
     for joint in PITCH:
         assert 0.5 * mass < by_links[f"joint{joint}.alpha"] < 1.5 * mass

@@ -35,7 +35,7 @@ def find_default(task: IdentificationRequest) -> FoundModel:
     task.report("judging the model", 0.0)
     windows = WindowResidual(prepared, arm, joints, longest_step=FINE_STEP_S)
     windows.settle(best.plant, best.zero)
-    sure = uncertainty(windows, best.space, best.x, joints, links=True)
+    sure = uncertainty(windows, best.space, best.x, joints, to_read=True)
     if search.complete and search.loops:
         scatter = scatter_of_fits(
             prepared,

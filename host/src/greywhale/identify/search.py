@@ -150,7 +150,7 @@ class Search:
                 starts = len(GEARS) + 2 if order == "backlash" else 1
                 self._begin_part(what, done + share * place, done + share * (place + 1), FITS * starts)
                 found.append(self._measure(self._fit_order(one, order)))
-            errors = [float(one.held_out or 0.0) for one in found]
+            errors = [float(one.held_out or 0.0) + self._least_gain(one) for one in found]
             winner = int(np.argmin(errors))
             self._take(found[winner])
             if self.best is before:
@@ -232,8 +232,13 @@ class Search:
         """Take a measured candidate if it predicts the held-out part better than the best so far."""
         best, error = self.best, candidate.held_out
         assert error is not None
-        if best is None or best.held_out is None or error < best.held_out - self._limits.min_improvement:
+        if best is None or best.held_out is None or error < best.held_out - self._least_gain(candidate):
             self.best = candidate
+
+    def _least_gain(self, candidate: Candidate) -> float:
+        """The gain that a candidate must have over the best so far."""
+        new = self.best is not None and "lost" in candidate.kinds and "lost" not in self.best.kinds
+        return self._limits.lossy_drivers if new else self._limits.min_improvement
 
     def _error(self, candidate: Candidate) -> float:
         """Misfit of the held-out windows: the mean over windows and joints of log(1 + squares over noise).

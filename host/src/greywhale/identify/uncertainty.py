@@ -50,12 +50,12 @@ EXCITATION = {
 
 @dataclass(frozen=True)
 class Uncertainty:
-    """Covariance of the searched numbers, what masses and lengths add to it, condition number of the information,
-    sentences on what is open.
+    """Covariance of the searched numbers, what only people read besides (masses, lengths, arms that differ from any
+    model), condition number of the information, sentences on what is open.
     """
 
     covariance: Floats
-    links: Floats  # a covariance, too
+    besides: Floats  # a covariance, too
     condition: float
     open: tuple[str, ...]
     limits: UncertaintyLimits = IDENTIFICATION_LIMITS.uncertainty
@@ -67,8 +67,8 @@ class Uncertainty:
 
     @property
     def whole(self) -> Floats:
-        """The covariance with the doubt about masses and lengths."""
-        return self.covariance + self.links
+        """The covariance with all doubts."""
+        return self.covariance + self.besides
 
     def widened(self, covariance: Floats, space: Space, x: Floats, joints: Sequence[int]) -> Uncertainty:
         """Return the uncertainty with another covariance."""
@@ -77,11 +77,11 @@ class Uncertainty:
 
 
 def uncertainty(
-    residual: WindowResidual, space: Space, x: Floats, joints: Sequence[int], links: bool = False
+    residual: WindowResidual, space: Space, x: Floats, joints: Sequence[int], to_read: bool = False
 ) -> Uncertainty:
     """Evaluate at a found point. Numbers that the readings leave open are as uncertain as the user's arm file.
 
-    Where nobody reads the deviations, masses and lengths need not be looked at.
+    `to_read`: people read the deviations; else masses and lengths need not be looked at.
     """
     # Wide differences: a joint that hunts makes the residual rough, and roughness is no information.
     limits = residual.limits.uncertainty
@@ -100,11 +100,13 @@ def uncertainty(
     gradients = np.zeros((residual.clusters.max() + 1, len(space)))
     np.add.at(gradients, residual.clusters, jacobian * numbers[0][:, None])
     covariance = _combine(information, gradients.T @ gradients, np.diag(space.doubts() ** -2.0))
-    by_links = np.zeros_like(covariance)
-    if links:
-        by_links = _covariance_by_links(residual, space, x, numbers[0], jacobian, limits)
-    found = _describe_open(space, x, np.sqrt(np.diag(covariance + by_links)), joints, limits)
-    return Uncertainty(covariance, by_links, condition, tuple(found), limits)
+    besides = np.zeros_like(covariance)
+    if to_read:
+        foreign = dict(limits.foreign)
+        besides = _covariance_by_links(residual, space, x, numbers[0], jacobian, limits)
+        besides += np.diag([foreign.get(one.kind, 0.0) ** 2 for one in space.parameters])
+    found = _describe_open(space, x, np.sqrt(np.diag(covariance + besides)), joints, limits)
+    return Uncertainty(covariance, besides, condition, tuple(found), limits)
 
 
 def _covariance_by_links(
