@@ -67,8 +67,10 @@ class LiveModel:
 
     def refit(self, stretches: Sequence[Stretch], table: ParameterTable, seed: int) -> LiveModel:
         """Return the model fitted to these stretches; joints that they do not move stay as they were."""
-        log, limits = log_of(stretches, table), self.limits.model
-        prepared = prepare(log, table["filter_shift"], self.limits.tuning.identification)
+        log, limits, usual = log_of(stretches, table), self.limits.model, self.limits.tuning.identification
+        # Where a reading lies, a motor that it leads comes to the wrong place, and the lie shows less.
+        unled = replace(usual, data=replace(usual.data, led_s=0.0))
+        prepared = prepare(log, table["filter_shift"], unled)
         moved = np.ptp(log.follower, axis=0) > limits.moved_rad
         joints = [joint for joint in self.arm.joints_in_use if moved[joint] and prepared.runs]
         if not joints:
