@@ -17,6 +17,7 @@ ANSWER_MS = 25  # a set that is applied takes 12
 EXCUSED = 4  # samples after the answer: what was lost shows at the next one
 WRAP_AFTER = 4000  # ticks, until the counter of 32 bits begins anew
 SECONDS = 20
+PUSHED_BYTES = 2  # by an interrupt that comes later in a function than any before; what leaks pushes more in 10 s
 MASK = (1 << 32) - 1
 MOTION_MS = 2094  # a turn of some 3 rad/s
 MOTION_MV = 2500.0 + 900.0 * np.sin(
@@ -159,7 +160,7 @@ def test_nothing_is_late_or_lost_while_everything_happens_at_once(board: str) ->
     soak.run(SECONDS / 2)
     counts = soak.counts
     assert (counts.unanswered, counts.lost_samples, counts.late_ticks, counts.faults) == (0, 0, 0, 0)
-    assert soak.bench.stack() == stack
+    assert soak.bench.stack() - stack <= PUSHED_BYTES
     assert counts.wraps == 1
     assert min(counts.applied, counts.saved, counts.enabled) > 20
     assert counts.samples > 15_000
