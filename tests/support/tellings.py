@@ -157,7 +157,7 @@ def identified() -> IdentificationResult:
 
 def commissioned() -> CommissioningResult:
     trials = [_trial("before", 0.03, ()), _trial("trial-1", 0.01, ("it hisses",))]
-    known = SimpleNamespace(before=trials[0], done=trials, table=TABLE)
+    known = SimpleNamespace(before=trials[0], done=trials, table=TABLE, softened=[])
     return CommissioningResult(known, (), trials[1])  # type: ignore[arg-type] # that is all it asks
 
 
