@@ -72,6 +72,15 @@ def test_after_a_few_tries_it_says_so(
     assert board.state is State.DISABLED
 
 
+@pytest.mark.parametrize("fault", [Fault.UNREST, Fault.SPEED, Fault.RUNAWAY, Fault.TRACKING])
+def test_a_joint_that_the_log_does_not_show_to_turn_did_not_swing(fault: Fault, tmp_path: Path) -> None:
+    with served(Faults(fault_at=(400, fault, 1))) as (_, device):
+        arm = ArmOnPort(device, ParameterTable.defaults(), Told())
+        played = arm.play(STILL, tmp_path / "log.csv", arm.before)
+    assert played.joint == 1
+    assert played.swung is (fault is Fault.UNREST), "unrest is swings by its definition"
+
+
 @pytest.mark.parametrize(
     "faults",
     [

@@ -152,9 +152,10 @@ def test_a_joint_that_swings_is_measured_with_less_voltage_and_so_when_it_goes_o
     assert before.table["joint1.ku_mv"] == swinging.calm_mv
     again = Trials(trials.journal, trials.check, table)
     assert again.play_before(no_arm).as_dict() == before.as_dict()
-    assert (
-        "swung until the board stopped it; with 1/4 of that voltage" in CommissioningResult(trials, (), before).text()
-    )
+    nothing_passed = CommissioningResult(trials, (), before)
+    assert "swung until the board stopped it; with 1/4 of that voltage" in nothing_passed.text()
+    assert not nothing_passed.improved
+    assert nothing_passed.table == table, "the board keeps what it stored"
 
 
 def test_a_joint_that_swings_however_soft_it_is_is_refused(trials: Trials, rig: SimulatedRig) -> None:

@@ -19,6 +19,7 @@ from greywhale.measure.swings import (
     most_unrest,
     rattle_of_record,
     ripple_of_record,
+    turns_at_end,
     unrest,
 )
 from greywhale.protocol.firmware import TICK_S, pwm_steps
@@ -163,3 +164,15 @@ def test_ripple_is_what_the_voltage_does_beyond_its_mean_over_25_ms(hz: float, s
     for board in (Board.MEGA2560, Board.NANO328):
         duties = np.round(voltage / 15.0 * np.array(pwm_steps(board))).astype(np.int16)[None]
         np.testing.assert_allclose(15.0 * ripple(duties, (0, 6000), board)[0], ripple_of_record(voltage), atol=0.03)
+
+
+def test_growing_swings_turn_and_a_wiper_that_jumps_or_a_leader_that_is_followed_does_not() -> None:
+    still, growing = wave(0.0, 0.0), wave(2.0, 0.1) * (TIME_S / TIME_S[-1])[:, None]
+    jumping = np.where((np.arange(6000) % 100 < 8)[:, None], 0.5, still)
+    led = wave(1.0, 0.3)
+    late = np.roll(led, 150, axis=0)
+    assert turns_at_end(TIME_S, still, growing).tolist() == [6] * 4
+    assert turns_at_end(TIME_S[::4], still[::4], growing[::4]).tolist() == [6] * 4
+    assert turns_at_end(TIME_S, still, jumping).tolist() == [0] * 4
+    assert turns_at_end(TIME_S, led, late + 1e-3).max() <= 1
+    assert turns_at_end(TIME_S[:1], still[:1], still[:1]).tolist() == [0] * 4

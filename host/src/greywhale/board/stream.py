@@ -23,8 +23,6 @@ OF_THE_MOTION = (
     schema.Fault.RUNAWAY,
     schema.Fault.STALLED,
 )
-# Those that end the growing swings of a joint whose gains are too high for it.
-OF_SWINGS = (schema.Fault.UNREST, schema.Fault.SPEED, schema.Fault.RUNAWAY)
 
 _TICK_COUNTS = 1 << 32  # after so many the board counts its ticks from 0 again
 # As long as the longest recording: no board that was heard all the time is silent for so many ticks.

@@ -17,10 +17,11 @@ from greywhale.base.types import Floats, Progress
 from greywhale.board.device import Device, hold_ctrl_c
 from greywhale.board.hunting_stop import Hunting, HuntingStop
 from greywhale.board.record import BUSY_LEASE_MS, pose_of, record_led
-from greywhale.board.stream import OF_SWINGS, OF_THE_MOTION, LeaseLostError
+from greywhale.board.stream import OF_THE_MOTION, LeaseLostError
 from greywhale.board.upload import read_parameters, run_set, upload_set
 from greywhale.files.log import Log, read_evidence
 from greywhale.files.trajectory import Trajectory
+from greywhale.measure.swings import VIOLENT, turns_at_end
 from greywhale.protocol import schema
 from greywhale.protocol.table import ParameterTable
 
@@ -127,7 +128,8 @@ class ArmOnPort:
             where = status.fault_where if status.fault_where < len(table.controllers) else None
             whose = "" if where is None else f" (joint {where})"
             told = f"the board stopped: {status.fault.description}{whose}"
-            return PlayedMotion(read_evidence(path), told, where, status.fault in OF_SWINGS)
+            log = read_evidence(path)
+            return PlayedMotion(log, told, where, where is not None and _swung(status.fault, log, where))
         return PlayedMotion(read_evidence(path))
 
     def _status(self) -> schema.StatusReply | None:
@@ -136,6 +138,15 @@ class ArmOnPort:
             return self.device.status()
         except UserError:
             return None
+
+
+def _swung(fault: schema.Fault, log: Log, joint: int) -> bool:
+    """True where a fault ended growing swings. Unrest is swings; the others may be a wire, too, so the log must show
+    that the joint turned.
+    """
+    if fault in (schema.Fault.SPEED, schema.Fault.RUNAWAY):
+        return bool(turns_at_end(log.time, log.leader, log.follower)[joint] >= VIOLENT.turns)
+    return fault is schema.Fault.UNREST
 
 
 @contextmanager

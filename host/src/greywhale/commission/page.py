@@ -72,7 +72,7 @@ def _trial(outcome: CommissioningResult, trial: Trial) -> dict[str, Any]:
         "name": trial.name,
         "log": trial.path.name,
         "stopped": trial.stopped,
-        "best": trial is outcome.best,
+        "on_board": trial is outcome.best and trial.table == outcome.table,
         "verdicts": [
             "; ".join(verdict.faults) if verdict.faults else "passed" if verdict.known else "not judged"
             for verdict in (trial.verdicts[joint] for joint in joints)

@@ -18,6 +18,7 @@ from greywhale.commission.motions import PARTS, Check
 from greywhale.commission.trials import Trial, TrialFacts, Trials
 from greywhale.loop.led_model import predict
 from greywhale.protocol.firmware import JOINTS
+from greywhale.protocol.table import ParameterTable
 
 
 class RoundFacts(TypedDict):
@@ -33,7 +34,7 @@ class ForeseenFacts(TrialFacts):
 
 class CommissioningFacts(TypedDict):
     improved: bool  # whether the board ends with other controllers than before
-    softened: PerJoint[int]  # how often each joint's voltage from before was halved: it swung until the board stopped
+    softened: PerJoint[int]  # how often a joint's voltage was halved for its trial "before": else it swung till stopped
     best: str  # name of the trial that the board ends with
     score: float  # what it leaves of the error from before in what a hand leads, all joints together
     tuned_score: float | None  # the same of the first round's tuned set, before the search on the model
@@ -86,7 +87,9 @@ def errors_beside(predicted: Measures, trial: Trial) -> str:
 
 @dataclass(frozen=True)
 class CommissioningResult:
-    """All trials of a commissioning, and the set `best` that the board runs and stores now."""
+    """All trials of a commissioning, and the `best` of them. The board runs and stores its set where that is another
+    than before.
+    """
 
     trials: Trials
     rounds: tuple[Round, ...]
@@ -96,6 +99,11 @@ class CommissioningResult:
     @property
     def improved(self) -> bool:
         return self.best is not self.trials.before
+
+    @property
+    def table(self) -> ParameterTable:
+        """The set that the board runs and stores now."""
+        return self.best.table if self.improved else self.trials.stored
 
     def predicted(self, trial: Trial, round_: Round) -> Measures:
         """Predict the measures of a trial with a round's model; asked once, and told to all."""
@@ -117,7 +125,7 @@ class CommissioningResult:
             "score": round(self.best.score, 4),
             "tuned_score": None if tuned is None else round(tuned.score, 4),
             "tuned_measured": tuned is not None and tuned.measured,
-            "parameter_crc": f"0x{self.best.table.crc:04x}",
+            "parameter_crc": f"0x{self.table.crc:04x}",
             "rounds": [
                 {
                     "round": one.number,
@@ -155,8 +163,7 @@ class CommissioningResult:
     def headline(self) -> str:
         """A sentence that names the set that the board runs now, and the joints that kept their controllers."""
         if not self.improved:
-            softer = ", softened" if self.trials.softened else ""
-            return f"No set passed on every joint: the controllers from before{softer} stay on the board."
+            return "No set passed on every joint: the controllers from before stay on the board."
         kept = [f"joint {joint} ({JOINT_NAMES[joint]})" for joint in self._kept]
         rest = f"; {' and '.join(kept)} kept the controller from before, since nothing better was found" if kept else ""
         return f"The board now runs and stores {self.best.name}{rest}."

@@ -136,7 +136,8 @@ class _Commissioning:
         self.stage = "confirming"
         best = confirm(self.trials, self.joints, connect, self.rounds[-1].learnt.fallback)
         if self.journal.get("end") is None:
-            connect().keep(best.table)
+            if best is not self.trials.before:
+                connect().keep(best.table)
             self.journal.note("end", {"best": best.name})
         return CommissioningResult(self.trials, tuple(self.rounds), best)
 

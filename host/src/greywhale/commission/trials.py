@@ -106,7 +106,8 @@ class Trials:
         self.journal = journal
         self.judging = judging
         self.check = check
-        self.table = before
+        self.stored = before  # by the board
+        self.table = before  # the same, with the softer controllers of joints that swung
         self.done: list[Trial] = []
         self.softened: list[int] = []  # joints whose controller from before was halved, in that order
         self.foresight: Foresight | None = None  # of the model of this round

@@ -61,6 +61,24 @@ def turns_of(angles: Floats, band_rad: float, first: int = 0) -> Integers:
     return found
 
 
+END_S = 1.6  # growing swings of 1.5 Hz turn VIOLENT.turns times in it
+JUMP_S = 0.02  # a reading that comes back sooner is a wiper's, no joint's
+
+
+def turns_at_end(time_s: Floats, leader: Floats, follower: Floats) -> Integers:
+    """Turns of VIOLENT size of followers (rows, 4), less those of their leaders, in a record's last END_S: (4,)."""
+    if len(time_s) < 2:
+        return np.zeros(JOINTS, dtype=np.intp)
+    last = time_s > time_s[-1] - END_S
+    row_s = float(np.median(np.diff(time_s[last])))
+    size = (2 * round(0.5 * JUMP_S / row_s) + 1, 1)
+    turned, led = (
+        turns_of(scipy.ndimage.median_filter(angles[last], size, mode="nearest"), VIOLENT.band_rad)
+        for angles in (follower, leader)
+    )
+    return turned - led
+
+
 # --- unrest -----------------------------------------------------------------------------------------------------------
 
 REST_AFTER_S = 0.7  # a follower may still be on its way for so long after its leader stopped
