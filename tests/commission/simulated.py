@@ -76,7 +76,7 @@ class SimulatedRig:
 
     @contextmanager
     def connected(
-        self, port: str, before: ParameterTable | None, progress: Callable[[str, float], None]
+        self, port: str, before: ParameterTable | None, nominal: ArmParameters, progress: Callable[[str, float], None]
     ) -> Iterator[SimulatedRig]:
         """In the place of greywhale.commission.arm_on_port.connected."""
         self.report = progress

@@ -13,6 +13,7 @@ from greywhale.board.device import Device
 from greywhale.board.record import BUSY_LEASE_MS, LEASE_MS
 from greywhale.board.stream import LeaseLostError
 from greywhale.commission.arm_on_port import TRIES, ArmOnPort
+from greywhale.files.arm import load_arm
 from greywhale.files.log import read_log
 from greywhale.files.trajectory import Trajectory
 from greywhale.protocol import schema
@@ -21,6 +22,7 @@ from greywhale.protocol.table import ParameterTable
 from tests.board.fake_board import FakeBoard, Faults, served
 
 STILL = Trajectory(np.array([0.0, 2.5]), np.zeros((2, 4)))  # longer than the lease
+ARM = load_arm("white_box")
 BUSY = "this computer was too busy: once more, attempt"
 
 
@@ -37,7 +39,7 @@ class Told(list[str]):
 def arm() -> Iterator[tuple[FakeBoard, ArmOnPort, Told]]:
     told = Told()
     with served() as (board, device):
-        yield board, ArmOnPort(device, ParameterTable.defaults(), told), told
+        yield board, ArmOnPort(device, ParameterTable.defaults(), ARM, told), told
 
 
 def late(times: int, board: FakeBoard, device: Device, patch: pytest.MonkeyPatch) -> None:
@@ -75,7 +77,7 @@ def test_after_a_few_tries_it_says_so(
 @pytest.mark.parametrize("fault", [Fault.UNREST, Fault.SPEED, Fault.RUNAWAY, Fault.TRACKING])
 def test_a_joint_that_the_log_does_not_show_to_turn_did_not_swing(fault: Fault, tmp_path: Path) -> None:
     with served(Faults(fault_at=(400, fault, 1))) as (_, device):
-        arm = ArmOnPort(device, ParameterTable.defaults(), Told())
+        arm = ArmOnPort(device, ParameterTable.defaults(), ARM, Told())
         played = arm.play(STILL, tmp_path / "log.csv", arm.before)
     assert played.joint == 1
     assert played.swung is (fault is Fault.UNREST), "unrest is swings by its definition"
@@ -95,7 +97,7 @@ def test_what_the_board_or_its_cable_did_is_not_led_again(faults: Faults, tmp_pa
     told, before = Told(), ParameterTable.defaults()
     with FakeBoard(faults) as board:
         with pytest.raises(UserError) as caught, Device(board.port, quiet_s=0.0) as device:
-            ArmOnPort(device, before, told).play(STILL, tmp_path / "log.csv", before)
+            ArmOnPort(device, before, ARM, told).play(STILL, tmp_path / "log.csv", before)
         assert board.asked(schema.LeadRequest) == 1
     assert not isinstance(caught.value, LeaseLostError)
     assert told.busy == 0

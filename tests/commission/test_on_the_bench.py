@@ -24,6 +24,7 @@ from greywhale.commission import arm_on_port
 from greywhale.commission import run as commissioning
 from greywhale.commission.arm_on_port import connected
 from greywhale.commission.motions import JointRange, check_motion, first_motion
+from greywhale.files.arm import load_arm
 from greywhale.files.log import read_log
 from greywhale.files.trajectory import Trajectory
 from greywhale.loop.controllers import controllers_of
@@ -34,6 +35,7 @@ from greywhale_sim.words import lock_step
 
 pytestmark = pytest.mark.slow
 BEFORE = ParameterTable.defaults()
+ARM = load_arm("white_box")
 
 
 @pytest.fixture
@@ -66,7 +68,7 @@ def running(bench: RunningBench) -> tuple[ParameterTable, State]:
 def test_a_joint_that_hunts_is_stopped_at_once_and_the_controllers_from_before_run(
     bench: LockStepBench, tmp_path: Path
 ) -> None:
-    with connected(bench.port, BEFORE, told) as arm:
+    with connected(bench.port, BEFORE, ARM, told) as arm:
         check = check_motion(small_check(arm.pose()))
         played = arm.play(check.motion, tmp_path / "log.csv", wild())
         assert played.joint == 2
@@ -86,7 +88,7 @@ def test_a_fault_of_the_board_ends_the_trial_and_not_the_commissioning(bench: Lo
     """Nearly no voltage: the follower stays behind its leader until the board stops it."""
     rows = controllers_of(BEFORE).copy()
     rows[:, 11] = 50
-    with connected(bench.port, BEFORE, told) as arm:
+    with connected(bench.port, BEFORE, ARM, told) as arm:
         pose = arm.pose()
         room = JointRange(pose, pose - 1.2, pose + 1.2)
         played = arm.play(check_motion(room).motion, tmp_path / "log.csv", BEFORE.with_controllers(rows), watched=False)
@@ -97,7 +99,7 @@ def test_a_fault_of_the_board_ends_the_trial_and_not_the_commissioning(bench: Lo
 
 def test_another_board_than_the_one_it_began_with_is_refused(bench: LockStepBench) -> None:
     with pytest.raises(UserError, match="but this commissioning began with"):
-        with connected(bench.port, wild(), told):
+        with connected(bench.port, wild(), ARM, told):
             pass
 
 
@@ -109,7 +111,7 @@ def test_a_line_lost_in_the_middle_leaves_motors_off_and_the_controllers_from_be
             bench.command("line lose 1")
 
     trial = BEFORE.with_raw({"joint0.kp": 50000})
-    with pytest.raises(UserError), connected(bench.port, BEFORE, cut) as arm:
+    with pytest.raises(UserError), connected(bench.port, BEFORE, ARM, cut) as arm:
         arm.play(check_motion(small_check(arm.pose())).motion, tmp_path / "log.csv", trial)
     assert read_log(tmp_path / "log.csv").origin.param_crc == trial.crc, "it ran when the line was lost"
     assert not bench.command("status")["motors_enabled"]

@@ -12,6 +12,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
+from greywhale.arm import ArmParameters
 from greywhale.base.errors import UserError
 from greywhale.base.types import Floats, Progress
 from greywhale.board.device import Device, hold_ctrl_c
@@ -19,6 +20,7 @@ from greywhale.board.hunting_stop import Hunting, HuntingStop
 from greywhale.board.record import BUSY_LEASE_MS, pose_of, record_led
 from greywhale.board.stream import OF_THE_MOTION, LeaseLostError
 from greywhale.board.upload import read_parameters, run_set, upload_set
+from greywhale.commission.sinking import describe_sinking
 from greywhale.files.log import Log, read_evidence
 from greywhale.files.trajectory import Trajectory
 from greywhale.measure.swings import VIOLENT, turns_at_end
@@ -44,11 +46,12 @@ class PlayedMotion:
 
 
 class ArmOnPort:
-    """A board on an open port that runs the table `before`."""
+    """A board on an open port that runs the table `before`, with an arm that is about the `nominal` one."""
 
-    def __init__(self, device: Device, before: ParameterTable, progress: Progress) -> None:
+    def __init__(self, device: Device, before: ParameterTable, nominal: ArmParameters, progress: Progress) -> None:
         self.device = device
         self.before = before
+        self.nominal = nominal
         self._progress = progress
         self._running = before
 
@@ -129,7 +132,9 @@ class ArmOnPort:
             whose = "" if where is None else f" (joint {where})"
             told = f"the board stopped: {status.fault.description}{whose}"
             log = read_evidence(path)
-            return PlayedMotion(log, told, where, where is not None and _swung(status.fault, log, where))
+            swung = where is not None and _swung(status.fault, log, where)
+            sinking = "" if where is None or swung else describe_sinking(log, where, self.nominal)
+            return PlayedMotion(log, told + sinking, where, swung)
         return PlayedMotion(read_evidence(path))
 
     def _status(self) -> schema.StatusReply | None:
@@ -150,7 +155,9 @@ def _swung(fault: schema.Fault, log: Log, joint: int) -> bool:
 
 
 @contextmanager
-def connected(port: str, before: ParameterTable | None, progress: Progress) -> Iterator[ArmOnPort]:
+def connected(
+    port: str, before: ParameterTable | None, nominal: ArmParameters, progress: Progress
+) -> Iterator[ArmOnPort]:
     """Open the port; the board must run the table `before`, where it is known. Leaving turns the motors off."""
     with Device(port) as device:
         running = read_parameters(device, progress)
@@ -159,4 +166,4 @@ def connected(port: str, before: ParameterTable | None, progress: Progress) -> I
                 f"{port}: the board runs parameter set {running.crc:#06x}, but this commissioning began with "
                 f"{before.crc:#06x}; connect that board, or begin anew in another folder."
             )
-        yield ArmOnPort(device, running, progress)
+        yield ArmOnPort(device, running, nominal, progress)

@@ -337,4 +337,6 @@ class _Commissioning:
     def _connection(self) -> Iterator[Callable[[], ArmOnPort]]:
         """The arm, connected when it is first asked for, and left with its motors off at the end."""
         with ExitStack() as stack:
-            yield cache(lambda: stack.enter_context(connected(self.options.port, self.before, self._report)))
+            yield cache(
+                lambda: stack.enter_context(connected(self.options.port, self.before, self.nominal, self._report))
+            )
