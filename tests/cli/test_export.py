@@ -5,13 +5,16 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+import numpy as np
 import pytest
 from click.testing import CliRunner
 
 from greywhale.cli.export import command
+from greywhale.files.log import read_log
 from greywhale.files.paper_tables import paper_table
 from greywhale.fuzzy.export_fis import fis_text
 from greywhale.fuzzy.settings import load_joints
+from tests.cli.example_log import write_log
 
 
 def run(*arguments: str) -> dict[str, list[str]]:
@@ -36,10 +39,21 @@ def test_one_joint_goes_into_the_named_file(tmp_path: Path) -> None:
     assert out.read_text().startswith("[System]\nName='before_tuning, joint 2'")
 
 
+def test_a_log_becomes_the_named_file(tmp_path: Path) -> None:
+    log, out = tmp_path / "log.csv", tmp_path / "log.npz"
+    write_log(log)
+    assert run(str(log), "--to", "npz", "--out", str(out))["written"] == [str(out)]
+    np.testing.assert_array_equal(np.load(out)["voltage"], read_log(log).voltage)
+
+
 @pytest.mark.parametrize(
     ("arguments", "complaint"),
     [
         ([], "exactly one of"),
+        (["--to", "npz"], "Give logs and --to"),
+        (["log.csv"], "Give logs and --to"),
+        (["log.csv", "--to", "npz", "--urdf", "default"], "exactly one of"),
+        (["log.csv", "--to", "npz", "--joint", "1"], "--joint does not go with --to npz"),
         (["--urdf", "default", "--mjcf", "default"], "exactly one of"),
         (["--urdf", "default", "--joint", "1"], "--joint goes with --fis"),
     ],
@@ -47,6 +61,6 @@ def test_one_joint_goes_into_the_named_file(tmp_path: Path) -> None:
 def test_what_to_write_must_be_clear(tmp_path: Path, arguments: list[str], complaint: str) -> None:
     out = tmp_path / "none"
     result = CliRunner().invoke(command, [*arguments, "--out", str(out)])
-    assert result.exit_code == 2
-    assert complaint in result.output
+    assert getattr(result.exception, "exit_code", result.exit_code) == 2
+    assert complaint in f"{result.output}{result.exception}"
     assert not out.exists()

@@ -46,7 +46,7 @@ CALLS = {
     "adapt": ["model.toml --seconds 1 --out new.toml"],
     "demo": ["--controller controller.toml"],
     "sim": ["--speed max", "--mistake list"],
-    "export": ["--fis controller.toml --out c.fis", "--urdf arm.toml --out a.urdf"],
+    "export": ["log.csv --to npz --out log.npz", "--fis controller.toml --out c.fis", "--urdf arm.toml --out a.urdf"],
     "arm new": ["--answers answers.toml --out new.toml"],
     "arm match": ["arm.toml --out matched.toml"],
     "arm import": ["arm.urdf --out imported.toml"],

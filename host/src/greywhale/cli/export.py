@@ -1,4 +1,4 @@
-"""`greywhale export`: controllers and arms in the formats of other programs."""
+"""`greywhale export`: logs, controllers and arms in the formats of other programs."""
 
 from __future__ import annotations
 
@@ -9,7 +9,11 @@ import click
 
 from greywhale.base.formats.whole import refuse_inputs, write_text
 from greywhale.cli import completion
-from greywhale.cli.output import FILE, json_option, option, overwrite_option, show
+from greywhale.cli.output import FILE, json_option, option, overwrite_option, show, warn
+from greywhale.files.exchange.formats import FORMATS, require_possible
+from greywhale.files.exchange.formats import write as write_logs
+from greywhale.files.exchange.recording import ExportOptions, Recording
+from greywhale.files.log import read_log
 from greywhale.files.outputs import require_new
 
 
@@ -17,7 +21,12 @@ class ExportAnswer(TypedDict):
     written: list[str]  # files
 
 
+_LINES = [f"{name}, {one.does.rstrip('.')}" for name, one in FORMATS.items()]
+
+
 @click.command("export")
+@click.argument("logs", metavar="[LOG]...", nargs=-1, type=FILE)
+@option("--to", type=click.Choice(list(FORMATS)), help=f"Logs as: {'; '.join(_LINES)}.")
 @option(
     "--fis",
     metavar="CONTROLLER.toml",
@@ -32,6 +41,8 @@ class ExportAnswer(TypedDict):
 @overwrite_option
 @json_option(ExportAnswer)
 def command(
+    logs: tuple[Path, ...],
+    to: str | None,
     fis: Path | None,
     urdf: str | None,
     mjcf: str | None,
@@ -40,21 +51,35 @@ def command(
     overwrite: bool,
     as_json: bool,
 ) -> None:
-    """Write a controller as MATLAB's .fis, or an arm as URDF or MuJoCo's MJCF.
+    """Write a log in a format of other programs, a controller as MATLAB's .fis, or an arm as URDF or MuJoCo's MJCF.
 
     A .fis holds one fuzzy controller: without --joint there are four, named OUT_joint0.fis to OUT_joint3.fis. Its
     inputs are Kp e and Kd ce within [-1, 1], its sets those that the firmware stores. Controllers and arms
     are files, or names that come with greywhale: before_tuning, table_8, table_9, table_10; default, worn, two_joints,
     white_box, grey_box, sticky_grey_box.
     """
-    if sum(source is not None for source in (fis, urdf, mjcf)) != 1:
-        raise click.UsageError("Give exactly one of --fis, --urdf and --mjcf.")
-    if joint is not None and fis is None:
+    if sum(source is not None for source in (to, fis, urdf, mjcf)) != 1 or (to is not None) != bool(logs):
+        raise click.UsageError("Give logs and --to, or exactly one of --fis, --urdf and --mjcf.")
+    options = ExportOptions(joint=joint)
+    if to is not None:
+        written = _export_logs(logs, to, out, options, overwrite)
+    elif fis is not None:
+        written = _export_fis(fis, out, joint, overwrite)
+    elif joint is not None:
         raise click.UsageError("--joint goes with --fis: an arm is written whole.")
-    arms = (urdf, mjcf)
-    written = _export_fis(fis, out, joint, overwrite) if fis is not None else [_export_arm(*arms, out, overwrite)]
+    else:
+        written = [_export_arm(urdf, mjcf, out, overwrite)]
     answer: ExportAnswer = {"written": [str(path) for path in written]}
     show(as_json, answer, "\n".join(answer["written"]))
+
+
+def _export_logs(logs: tuple[Path, ...], to: str, out: Path, options: ExportOptions, overwrite: bool) -> list[Path]:
+    require_possible(to, len(logs), options)
+    refuse_inputs(out, *logs)
+    require_new(overwrite, out)
+    read = [read_log(path) for path in logs]
+    warn(remark for log in read for remark in log.remarks)
+    return write_logs(to, [Recording(log) for log in read], out, options)
 
 
 def _export_fis(source: Path, out: Path, joint: int | None, overwrite: bool) -> list[Path]:

@@ -35,7 +35,7 @@ VERBS = {
     "identify": "Find the arm that made a log: a model with its uncertainties.",
     "tune": "Find controllers for a model: a controller.toml for upload.",
     "arm": "Make an arm.toml: from a ruler, a scale and data sheets, or from a URDF.",
-    "export": "Write a controller as .fis (MATLAB), an arm as URDF or MJCF.",
+    "export": "Write logs, controllers and arms in formats of other programs.",
 }
 
 

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from greywhale.files.log.parameters import lines_of
 from greywhale.protocol.firmware import JOINTS
-from greywhale.protocol.joints import ALL, Joints
+from greywhale.protocol.joints import ALL, Joints, listed
 from greywhale.protocol.table import ParameterTable
 
 TITLE = "greywhale log 1"
@@ -36,3 +37,18 @@ class Origin:
     every_ticks: int | None = None
     table: ParameterTable | None = None  # that ran
     joints: Joints = ALL  # in use; the columns of the others are 0
+
+    @property
+    def facts(self) -> dict[str, str]:
+        """The facts that are known, as the header states them and in its order, the parameters that ran behind them."""
+        facts = {
+            "firmware": self.firmware,
+            "board": self.board,
+            "parameter_crc": None if self.param_crc is None else f"0x{self.param_crc:04x}",
+            "period_ms": self.period_ms,
+            "every_ticks": self.every_ticks,
+            "joints_in_use": None if self.joints == ALL else listed(self.joints),
+        }
+        known = {key: str(value) for key, value in facts.items() if value is not None}
+        lines = [] if self.table is None else lines_of(self.table)
+        return known | dict(line.split(": ", 1) for line in lines)

@@ -13,9 +13,10 @@ from numpy.typing import NDArray
 
 from greywhale.base.errors import UserError, cut
 from greywhale.base.formats import csv_file
+from greywhale.files.log.check import KEY as CHECK
 from greywhale.files.log.check import Check, add_rows, facts_of
 from greywhale.files.log.condition import Condition, judge_condition
-from greywhale.files.log.layout import COLUMNS, COMPLETE, ENDINGS, STATES, TITLE, UNFINISHED, Origin
+from greywhale.files.log.layout import COLUMNS, COMPLETE, ENDINGS, INTERRUPTED, STATES, TITLE, UNFINISHED, Origin
 from greywhale.files.log.parameters import table_in
 from greywhale.files.log.units import doubt_angles, perhaps_degrees, refuse_other_spacing
 from greywhale.protocol.firmware import JOINTS
@@ -61,6 +62,17 @@ class Log:
     def remarks(self) -> tuple[str, ...]:
         """Remarks for whoever uses the log, a sentence each."""
         return tuple(f"{self.name}: {remark}" for remark in self.condition.remarks)
+
+    @property
+    def facts(self) -> dict[str, str]:
+        """The facts of the header, and how it ended; `check` is the check's outcome."""
+        ended = {
+            "dropped_samples": str(self.dropped),
+            "recording": COMPLETE if self.complete else INTERRUPTED,
+            "ended_by": self.ended_by,
+            CHECK: self.condition.check.value,
+        }
+        return self.origin.facts | ended
 
     def without_samples(self) -> Log:
         """The log without its samples, which take most of the memory."""

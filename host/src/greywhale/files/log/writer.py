@@ -30,9 +30,7 @@ from greywhale.files.log.layout import (
     UNFINISHED,
     Origin,
 )
-from greywhale.files.log.parameters import lines_of
 from greywhale.protocol.firmware import JOINTS
-from greywhale.protocol.joints import ALL, listed
 
 _DIGITS = (TIME_DIGITS, *(digits for digits in QUANTITIES.values() for _ in range(JOINTS)))
 _ROW = ",".join(f"%.{digits}f" for digits in _DIGITS) + ",%s\n"
@@ -182,18 +180,7 @@ class LogWriter:
 
     def _header(self, ending: str, reason: str, *, checked: bool = False) -> bytes:
         """The header. Its length is always the same, so that the end of a recording can rewrite it in place."""
-        origin = self.origin
-        facts = {
-            "firmware": origin.firmware,
-            "board": origin.board,
-            "parameter_crc": None if origin.param_crc is None else f"0x{origin.param_crc:04x}",
-            "period_ms": origin.period_ms,
-            "every_ticks": origin.every_ticks,
-            "joints_in_use": None if origin.joints == ALL else listed(origin.joints),
-        }
-        lines = [f"# {TITLE}", *(f"# {key}: {value}" for key, value in facts.items() if value is not None)]
-        if origin.table is not None:
-            lines += [f"# {line}" for line in lines_of(origin.table)]
+        lines = [f"# {TITLE}", *(f"# {key}: {value}" for key, value in self.origin.facts.items())]
         lines += [f"# dropped_samples: {self.dropped:<{_VALUE_ROOM}d}", f"# recording: {ending:<{_VALUE_ROOM}}"]
         if self._states_gaps:
             lines.append(f"# gaps: {cut(_gaps(self.gaps), _REASON_ROOM):<{_REASON_ROOM}}")
