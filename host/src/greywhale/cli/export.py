@@ -37,7 +37,9 @@ _LINES = [f"{name}, {one.does.rstrip('.')}" for name, one in FORMATS.items()]
 @option("--urdf", metavar="ARM.toml", help="An arm for ROS, Pinocchio and others.")
 @option("--mjcf", metavar="ARM.toml", help="An arm for MuJoCo.")
 @option("--out", "-o", required=True, type=FILE, help="The file to write.")
-@option("--joint", type=click.IntRange(0, 3), help="With --fis: this joint only, into OUT itself.")
+@option("--joint", type=click.IntRange(0, 3), help="With --fis: this joint only, into OUT itself. --to bam needs it.")
+@option("--mass", type=float, help="With --to bam: the pendulum's mass, kg.")
+@option("--length", type=float, help="With --to bam: its length, m.")
 @overwrite_option
 @json_option(ExportAnswer)
 def command(
@@ -48,6 +50,8 @@ def command(
     mjcf: str | None,
     out: Path,
     joint: int | None,
+    mass: float | None,
+    length: float | None,
     overwrite: bool,
     as_json: bool,
 ) -> None:
@@ -60,9 +64,10 @@ def command(
     """
     if sum(source is not None for source in (to, fis, urdf, mjcf)) != 1 or (to is not None) != bool(logs):
         raise click.UsageError("Give logs and --to, or exactly one of --fis, --urdf and --mjcf.")
-    options = ExportOptions(joint=joint)
+    if to is None and (mass is not None or length is not None):
+        raise click.UsageError("--mass and --length go with --to bam.")
     if to is not None:
-        written = _export_logs(logs, to, out, options, overwrite)
+        written = _export_logs(logs, to, out, ExportOptions(joint, mass, length), overwrite)
     elif fis is not None:
         written = _export_fis(fis, out, joint, overwrite)
     elif joint is not None:

@@ -32,7 +32,11 @@ class Format:
 
 
 FORMATS = {
+    "bam": Format("one joint for Rhoban's BAM.", "bam:write", options=("joint", "mass", "length")),
+    "mcap": Format("for PlotJuggler and Foxglove.", "mcap:write", "mcap", ("mcap.writer", "google.protobuf")),
+    "mat": Format("for MATLAB and Octave.", "mat:write"),
     "npz": Format("numpy's arrays.", "npz:write"),
+    "parquet": Format("a table for pandas, DuckDB and others.", "parquet:write", "parquet", ("pyarrow",)),
 }
 
 

@@ -43,6 +43,15 @@ class Recording:
         return (*(JointColumns(*one) for one in own), *self.extra)
 
     @property
+    def columns(self) -> tuple[tuple[str, str, Floats], ...]:
+        """A column for each joint of each quantity, under the names of a log: name, unit and values (rows,)."""
+        return tuple(
+            (f"{one.name}_{joint}", one.unit, column)
+            for one in self.quantities
+            for joint, column in enumerate(one.values.T)
+        )
+
+    @property
     def units(self) -> dict[str, str]:
         return {"time_s": "s"} | {one.name: one.unit for one in self.quantities}
 
@@ -69,3 +78,5 @@ class ExportOptions:
     """The options that only some formats take (`Format.options`); None: it was not given."""
 
     joint: int | None = None
+    mass: float | None = None  # kg
+    length: float | None = None  # m
