@@ -25,6 +25,8 @@ from greywhale.commission import CommissioningRequest
 from greywhale.dashboard import server as dashboard_server
 from greywhale.files import parameter_file
 from greywhale.files.arm import content_of, default_arm, load_arm
+from greywhale.files.exchange.npz import write as export_npz
+from greywhale.files.exchange.recording import ExportOptions, Recording
 from greywhale.files.leader import save_leader
 from greywhale.files.log import LogWriter, read_log
 from greywhale.files.log.layout import Origin
@@ -77,6 +79,9 @@ def yours(tmp_path_factory: pytest.TempPathFactory) -> Path:
                 log.append(float(time_s), angles.tolist(), (angles - sag).tolist(), [0.0] * 4, "following")
     for name in LOGS:
         shutil.copy(folder / "fit.csv", folder / f"{name}.csv")
+    export_npz([Recording(read_log(folder / "log.csv"))], folder / "log.npz", ExportOptions())
+    rows = "".join(f"{20 * row},{row % 7},{row % 5},{row % 3}\n" for row in range(200))
+    (folder / "theirs.csv").write_text(f"t,goal,q1,u\n{rows}", encoding="utf-8")
     (folder / "arm.toml").write_bytes(content_of("default"))
     (folder / "arm.urdf").write_text(urdf(load_arm("default")), encoding="utf-8")
     write_model(folder / "model.toml")

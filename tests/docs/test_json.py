@@ -47,6 +47,7 @@ CALLS = {
     "demo": ["--controller controller.toml"],
     "sim": ["--speed max", "--mistake list"],
     "export": ["log.csv --to npz --out log.npz", "--fis controller.toml --out c.fis", "--urdf arm.toml --out a.urdf"],
+    "import": ["log.npz --from npz --out new.csv"],
     "arm new": ["--answers answers.toml --out new.toml"],
     "arm match": ["arm.toml --out matched.toml"],
     "arm import": ["arm.urdf --out imported.toml"],

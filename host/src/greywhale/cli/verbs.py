@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import keyword
 import pkgutil
 from pathlib import Path
 
@@ -36,6 +37,7 @@ VERBS = {
     "tune": "Find controllers for a model: a controller.toml for upload.",
     "arm": "Make an arm.toml: from a ruler, a scale and data sheets, or from a URDF.",
     "export": "Write logs, controllers and arms in formats of other programs.",
+    "import": "Make a log of another program's recording.",
 }
 
 
@@ -51,7 +53,7 @@ def place_of(verb: str) -> str:
 
 
 def _place(verb: str) -> str:
-    return f"{__package__}.{verb}:command"
+    return f"{__package__}.{verb}{'_' * keyword.iskeyword(verb)}:command"
 
 
 class Verbs(Group):

@@ -14,6 +14,8 @@ STATES = ("boot", "disabled", "soft_start", "following", "fault")
 # Each for joint 0..3, and its digits after the point: rad, rad, V.
 QUANTITIES = {"leader": 6, "follower": 6, "voltage": 3}
 TIME_DIGITS = 6  # of s
+# No board sends larger values: 16 bits of 1/4096 rad and of mV. Such values are another tool's degrees or millivolts.
+MOST = {"leader": (8.0, "rad"), "follower": (8.0, "rad"), "voltage": (33.0, "V")}
 COLUMNS = ("time_s", *(f"{quantity}_{joint}" for quantity in QUANTITIES for joint in range(JOINTS)), "state")
 HEADING = ",".join(COLUMNS)
 

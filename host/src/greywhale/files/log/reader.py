@@ -5,6 +5,7 @@ column.
 from __future__ import annotations
 
 import io
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -16,7 +17,7 @@ from greywhale.base.formats import csv_file
 from greywhale.files.log.check import KEY as CHECK
 from greywhale.files.log.check import Check, add_rows, facts_of
 from greywhale.files.log.condition import Condition, judge_condition
-from greywhale.files.log.layout import COLUMNS, COMPLETE, ENDINGS, INTERRUPTED, STATES, TITLE, UNFINISHED, Origin
+from greywhale.files.log.layout import COLUMNS, COMPLETE, ENDINGS, INTERRUPTED, MOST, STATES, TITLE, UNFINISHED, Origin
 from greywhale.files.log.parameters import table_in
 from greywhale.files.log.units import doubt_angles, perhaps_degrees, refuse_other_spacing
 from greywhale.protocol.firmware import JOINTS
@@ -24,13 +25,11 @@ from greywhale.protocol.joints import ALL, Joints, parse
 from greywhale.protocol.table import ParameterTable
 
 _LARGEST_WHOLE_NUMBER = (1 << 63) - 1  # in a header
-# No board sends larger values: 16 bits of 1/4096 rad and of mV. Such values are another tool's degrees or millivolts.
-_MOST = {"leader": (8.0, "rad"), "follower": (8.0, "rad"), "voltage": (33.0, "V")}
 _FOLLOWING = STATES.index("following")
 # More changes of a voltage than these, and in all so many, are no chance.
 _MOST_CHANGES_PER_PERIOD, _ENOUGH_CHANGES = 1.2, 100
 # Where each quantity stands in a row of numbers, behind the time.
-_PLACES = {name: slice(1 + place * JOINTS, 1 + (place + 1) * JOINTS) for place, name in enumerate(_MOST)}
+_PLACES = {name: slice(1 + place * JOINTS, 1 + (place + 1) * JOINTS) for place, name in enumerate(MOST)}
 # What a row holds; of other letters numpy takes some for blanks.
 _PLAIN = bytes(range(0x20, 0x7F)) + b"\n"
 # A row as numpy reads it; a word that is longer than any state is cut, and still is none.
@@ -90,8 +89,8 @@ def read_log(path: str | Path) -> Log:
             raise UserError(
                 f"{path}: recording is {cut(repr(ending))} in the header; it must be one of {', '.join(ENDINGS)}."
             )
-        origin = _origin(facts, str(path))
-        dropped = _dropped(facts, str(path))
+        origin = origin_in(facts, str(path))
+        dropped = dropped_in(facts, str(path))
         columns, crc = _Columns(_count_lines(path)), 0
         for block in file.blocks(torn=ending == UNFINISHED):
             columns.take(file, block)
@@ -181,9 +180,9 @@ def parse_rows(data: bytes) -> tuple[NDArray[np.float64], NDArray[np.int8]] | No
     return None if (states < 0).any() else (rows["numbers"], states)
 
 
-def refuse_other_times(name: str, facts: dict[str, str], time_s: NDArray[np.float64]) -> None:
+def refuse_other_times(name: str, facts: Mapping[str, str], time_s: NDArray[np.float64]) -> None:
     """Refuse rows that are further apart than the header's facts say, or closer."""
-    refuse_other_spacing(name, _every_ticks(facts, name), _dropped(facts, name), time_s)
+    refuse_other_spacing(name, _every_ticks(facts, name), dropped_in(facts, name), time_s)
 
 
 def _refuse_other_period(name: str, origin: Origin, columns: _Columns) -> None:
@@ -201,7 +200,7 @@ def _refuse_other_period(name: str, origin: Origin, columns: _Columns) -> None:
 def _is_good(numbers: NDArray[np.float64], before_s: float) -> bool:
     """True if time goes on, and all is within what a board can say."""
     return csv_file.is_time_axis(numbers[:, 0], before_s) and all(
-        bool((np.abs(numbers[:, _PLACES[quantity]]) <= most).all()) for quantity, (most, _) in _MOST.items()
+        bool((np.abs(numbers[:, _PLACES[quantity]]) <= most).all()) for quantity, (most, _) in MOST.items()
     )
 
 
@@ -244,7 +243,7 @@ def _check_version(file: csv_file.CsvFile) -> None:
 
 def _joints(table: csv_file.CsvTable, quantity: str) -> NDArray[np.float64]:
     """The quantity of every joint, within what a board can say."""
-    most, unit = _MOST[quantity]
+    most, unit = MOST[quantity]
     columns = []
     for joint in range(JOINTS):
         column = f"{quantity}_{joint}"
@@ -259,7 +258,8 @@ def _joints(table: csv_file.CsvTable, quantity: str) -> NDArray[np.float64]:
     return np.column_stack(columns)
 
 
-def _origin(facts: dict[str, str], name: str) -> Origin:
+def origin_in(facts: Mapping[str, str], name: str) -> Origin:
+    """The origin that the facts of the header of the log `name` state."""
     board, crc = facts.get("board"), _whole(facts, "parameter_crc", name, 0, 0xFFFF)
     table = table_in(facts, name, crc, board)
     return Origin(
@@ -273,22 +273,23 @@ def _origin(facts: dict[str, str], name: str) -> Origin:
     )
 
 
-def _joints_in_use(facts: dict[str, str], name: str, table: ParameterTable | None) -> Joints:
+def _joints_in_use(facts: Mapping[str, str], name: str, table: ParameterTable | None) -> Joints:
     """The joints that the header states, or else its parameters; a log that states neither is of a whole arm."""
     if "joints_in_use" in facts:
         return parse(facts["joints_in_use"], f"{name}: joints_in_use")
     return ALL if table is None else table.joints_in_use
 
 
-def _every_ticks(facts: dict[str, str], name: str) -> int | None:
+def _every_ticks(facts: Mapping[str, str], name: str) -> int | None:
     return _whole(facts, "every_ticks", name, 1, 0xFFFF)
 
 
-def _dropped(facts: dict[str, str], name: str) -> int:
+def dropped_in(facts: Mapping[str, str], name: str) -> int:
+    """The number of samples that the link lost, as these facts state it."""
     return _whole(facts, "dropped_samples", name, 0, _LARGEST_WHOLE_NUMBER) or 0
 
 
-def _whole(facts: dict[str, str], key: str, name: str, least: int, most: int) -> int | None:
+def _whole(facts: Mapping[str, str], key: str, name: str, least: int, most: int) -> int | None:
     text = facts.get(key)
     if text is None:
         return None
