@@ -1,4 +1,6 @@
-"""avr8js, the second simulator of the Nano, as its package-lock pins it, and the Node.js that runs it."""
+"""The outside references that run in Node.js, as their package-lock pins them, and Node.js itself: avr8js, the second
+simulator of the Nano, and the second reader of MCAP files.
+"""
 
 from __future__ import annotations
 
@@ -8,19 +10,25 @@ from tools import ROOT
 from tools.setup import stamps, system
 from tools.setup.console import run, say
 
-PINNED = [ROOT / "tests/oracles/avr8js" / name for name in ("package.json", "package-lock.json")]
-PLACE = ROOT / "build" / "avr8js"
+FOLDERS = ("avr8js", "mcap")  # in tests/oracles; each goes into one of its name in build
 
 
 def step() -> None:
     if not (shutil.which("node") and shutil.which("npm")):  # somebody may have a newer Node.js than Debian's
         system.ensure(("nodejs", "npm"))
-    wanted = stamps.digest(PINNED)
-    if stamps.is_current("avr8js", wanted) and (PLACE / "node_modules" / "avr8js").is_dir():
+    for name in FOLDERS:
+        _install(name)
+
+
+def _install(name: str) -> None:
+    pinned = [ROOT / "tests" / "oracles" / name / file for file in ("package.json", "package-lock.json")]
+    place = ROOT / "build" / name
+    wanted = stamps.digest(pinned)
+    if stamps.is_current(name, wanted) and (place / "node_modules").is_dir():
         return
-    say("installing avr8js")
-    PLACE.mkdir(parents=True, exist_ok=True)
-    for path in PINNED:
-        shutil.copy(path, PLACE)
-    run(["npm", "ci", "--prefix", str(PLACE), "--no-audit", "--no-fund"], what="Installing avr8js with npm")
-    stamps.set_current("avr8js", wanted)
+    say(f"installing {name} for Node.js")
+    place.mkdir(parents=True, exist_ok=True)
+    for path in pinned:
+        shutil.copy(path, place)
+    run(["npm", "ci", "--prefix", str(place), "--no-audit", "--no-fund"], what=f"Installing {name} with npm")
+    stamps.set_current(name, wanted)
