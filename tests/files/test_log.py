@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import csv
 import os
 import resource
 import tracemalloc
@@ -12,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 
 from greywhale.base.errors import UserError
@@ -282,6 +283,31 @@ def test_a_log_takes_no_more_memory_than_its_numbers(path: Path, monkeypatch: py
     assert len(log.time) == 20_000
     block = 40 * csv_file.BLOCK_BYTES  # what the parsing of one block takes
     assert most < 20_000 * 13 * 8 + 20_000 + block
+
+
+@given(st.text())
+@settings(max_examples=60, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@example('Put "it", then\n# task: go;')
+@example("\u676f\u5b50\u3092\u7f6e\u304f \u2028 \x85 \udc80,")
+def test_a_task_comes_back_in_any_words_also_from_a_spreadsheet(tmp_path: Path, task: str) -> None:
+    path = tmp_path / "log.csv"
+    with LogWriter(path, replace(ORIGIN, task=task)) as log:
+        for row in range(3):
+            log.append(row * 0.005, *ROW)
+    lines = path.read_text("ascii").splitlines()
+    assert (read_log(path).origin, read_log(path).condition.check) == (log.origin, Check.WHOLE)
+    with path.open("w", newline="") as file:
+        csv.writer(file).writerows(csv.reader(lines))
+    assert (read_log(path).origin, read_log(path).condition.check) == (log.origin, Check.WHOLE)
+
+
+@pytest.mark.parametrize(
+    ("words", "task"),
+    [('"Fold it"', "Fold it"), ("Fold it, twice", "Fold it, twice"), ('"Fold it', '"Fold it'), ("7", "7"), ("", None)],
+)
+def test_a_person_may_write_the_task_into_a_log(tmp_path: Path, words: str, task: str | None) -> None:
+    log = changed(tmp_path, "# dropped_samples", f"# task: {words}\n# dropped_samples")
+    assert (log.origin.task, log.condition.check) == (task, Check.WHOLE)
 
 
 def test_the_header_says_which_joints_are_in_use_where_not_all_are(path: Path) -> None:

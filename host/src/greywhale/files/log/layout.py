@@ -39,10 +39,11 @@ class Origin:
     every_ticks: int | None = None
     table: ParameterTable | None = None  # that ran
     joints: Joints = ALL  # in use; the columns of the others are 0
+    task: str | None = None  # of an episode, in a person's words
 
     @property
     def facts(self) -> dict[str, str]:
-        """The facts that are known, as the header states them and in its order, the parameters that ran behind them."""
+        """The facts that are known, in the header's order, the parameters that ran behind them; a header quotes the task."""
         facts = {
             "firmware": self.firmware,
             "board": self.board,
@@ -50,6 +51,7 @@ class Origin:
             "period_ms": self.period_ms,
             "every_ticks": self.every_ticks,
             "joints_in_use": None if self.joints == ALL else listed(self.joints),
+            "task": self.task,
         }
         known = {key: str(value) for key, value in facts.items() if value is not None}
         lines = [] if self.table is None else lines_of(self.table)

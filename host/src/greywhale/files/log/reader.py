@@ -17,6 +17,7 @@ from greywhale.base.formats import csv_file
 from greywhale.files.log.check import KEY as CHECK
 from greywhale.files.log.check import Check, add_rows, facts_of
 from greywhale.files.log.condition import Condition, judge_condition
+from greywhale.files.log.episodes import task_in
 from greywhale.files.log.layout import COLUMNS, COMPLETE, ENDINGS, INTERRUPTED, MOST, STATES, TITLE, UNFINISHED, Origin
 from greywhale.files.log.parameters import table_in
 from greywhale.files.log.units import doubt_angles, perhaps_degrees, refuse_other_spacing
@@ -270,6 +271,7 @@ def origin_in(facts: Mapping[str, str], name: str) -> Origin:
         every_ticks=_every_ticks(facts, name),
         table=table,
         joints=_joints_in_use(facts, name, table),
+        task=task_in(facts),
     )
 
 

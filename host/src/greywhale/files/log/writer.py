@@ -19,6 +19,8 @@ from typing import Self
 from greywhale.base.errors import UserError, cut, os_reason
 from greywhale.base.formats.draft import Draft, sync
 from greywhale.files.log.check import KEY, add_rows, check_text, facts_of
+from greywhale.files.log.episodes import KEY as TASK
+from greywhale.files.log.episodes import task_line
 from greywhale.files.log.layout import (
     COMPLETE,
     HEADING,
@@ -180,7 +182,8 @@ class LogWriter:
 
     def _header(self, ending: str, reason: str, *, checked: bool = False) -> bytes:
         """The header. Its length is always the same, so that the end of a recording can rewrite it in place."""
-        lines = [f"# {TITLE}", *(f"# {key}: {value}" for key, value in self.origin.facts.items())]
+        facts = self.origin.facts.items()
+        lines = [f"# {TITLE}", *(f"# {task_line(value) if key == TASK else f'{key}: {value}'}" for key, value in facts)]
         lines += [f"# dropped_samples: {self.dropped:<{_VALUE_ROOM}d}", f"# recording: {ending:<{_VALUE_ROOM}}"]
         if self._states_gaps:
             lines.append(f"# gaps: {cut(_gaps(self.gaps), _REASON_ROOM):<{_REASON_ROOM}}")
