@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from importlib import resources
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from greywhale.arm import Arm
+from greywhale.arm.plants import check_plants, column, plant_row
 from greywhale.base.errors import UserError
 from greywhale.files.arm import arm_names, default_arm, load_arm
 from greywhale.files.controller import load
@@ -89,6 +91,19 @@ def test_bad_values_are_refused_by_file_key_value_and_reason(tmp_path: Path, old
     with pytest.raises(UserError) as refused:
         load_arm(path)
     assert names(refused.value.message, f"{path}: {things}")
+
+
+def test_drivers_lose_twice_the_supply_at_most(make_arm: Any) -> None:
+    """Beyond it no voltage can arrive, and the bounds of what the ideal controller asks for would cross."""
+    drive = {"supply": 6.0}
+    arm = make_arm("default", drive=drive, every_joint={"driver": {"lost_up": 7.0, "lost_down": 5.0}})
+    check_plants(plant_row(arm))
+    with pytest.raises(UserError, match=r"joint\[0\].driver .* 12.1 V, more than twice the supply of 6 V"):
+        make_arm("default", drive=drive, every_joint={"driver": {"lost_up": 7.1, "lost_down": 5.0}})
+    edited = plant_row(arm)
+    edited[column("lost_down", 2)] = 5.2
+    with pytest.raises(UserError, match=r"joint2.lost_up is 7, but with lost_down"):
+        check_plants(edited)
 
 
 def test_missing_joint_is_refused(tmp_path: Path) -> None:

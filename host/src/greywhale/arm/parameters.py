@@ -238,6 +238,17 @@ class ArmParameters(Table):
             raise ValueError("all four joints are fixed; an arm needs one that moves")
         return self
 
+    @model_validator(mode="after")
+    def _drivers_leave_volts(self) -> ArmParameters:
+        for number in self.joints_in_use:
+            up, down = self.joint[number].driver.lost_up, self.joint[number].driver.lost_down
+            if up + down > 2.0 * self.drive.supply:
+                raise ValueError(
+                    f"joint[{number}].driver loses lost_up + lost_down = {up + down:g} V, more than twice the supply "
+                    f"of {self.drive.supply:g} V; no driver loses more than it gets"
+                )
+        return self
+
     @property
     def joints_in_use(self) -> Joints:
         return tuple(number for number, joint in enumerate(self.joint) if not joint.fixed)

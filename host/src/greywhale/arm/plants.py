@@ -68,6 +68,8 @@ def check_plants(plants: Plants) -> Plants:
     for name, below in (("breakaway", "coulomb"), ("stop_max", "stop_min")):
         lower = rows[:, columns(name)] < rows[:, columns(below)]
         _refuse(rows, _mark_column(rows, name, lower), f"it must not be below {below}")
+    lost = rows[:, columns("lost_up")] + rows[:, columns("lost_down")] > 2.0 * rows[:, [column("supply")]]
+    _refuse(rows, _mark_column(rows, "lost_up", lost), "with lost_down it must not be above twice the supply")
     toothless = (rows[:, columns("stiffness")] == 0.0) & (rows[:, columns("half_gap")] > 0.0)
     _refuse(rows, _mark_column(rows, "stiffness", toothless), "a gear with a gap needs teeth with some")
     return np.ascontiguousarray(rows)
