@@ -197,7 +197,7 @@ void bind_score(nb::module_& m) {
         "Costs n x 4 over all plants and classes.");
   m.def("unrest", &unrest, nb::kw_only(), "result"_a, "pwm_top"_a, "rests"_a, "band_rad"_a, "turns"_a, "supply_v"_a,
         "swings"_a, "measure"_a,
-        "Reversals, travel, chatter, ripple, fails and lost in the worst rest, ripple in all rests: n x 4 x 6.");
+        "Reversals, travel, chatter, fails and lost of the worst rest, and fourth the ripple of all rests: n x 4 x 6.");
   m.def("unrest_prices", &unrest_prices, nb::kw_only(), "scenarios"_a, "unrest"_a, "quiet_v"_a, "strict"_a, "margins"_a,
         "swings"_a, "Prices n x 4 of the unrest in some scenarios, scenarios x n x plants x 4 x 6.");
   m.def("falls_short", &falls_short, nb::kw_only(), "scenarios"_a, "failing"_a, "ripple_v"_a, "may_fail"_a, "quiet_v"_a,
