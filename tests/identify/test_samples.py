@@ -16,6 +16,8 @@ from greywhale.identify.found_model import Rival
 from greywhale.identify.space import Space
 from greywhale.loop import plant_row
 
+LINKS_SHARE = 0.1  # of a torque: more doubt does not come from masses and lengths
+
 
 @pytest.fixture(scope="module")
 def model(outcome: IdentificationResult, tmp_path_factory: pytest.TempPathFactory) -> ArmParameters:
@@ -67,6 +69,8 @@ def test_draws_have_the_covariance_of_the_file(model: ArmParameters, outcome: Id
         drawn, read = np.sqrt(outcome.found.covariance[index, index]), outcome.estimates[index]
         assert read.deviation is not None
         assert drawn * read.value < 1.0001 * read.deviation, "people read the doubt about masses and lengths, too"
+        links = LINKS_SHARE if parameter.kind == "alpha" else 0.0  # they scale with torque alone
+        assert read.deviation < 1.25 * read.value * np.hypot(np.std(taken[-1]), links)
     wanted = outcome.found.covariance[np.ix_(expected, expected)]
     scale = np.sqrt(np.diag(wanted))
     np.testing.assert_allclose(
