@@ -14,6 +14,7 @@ import pytest
 from hypothesis import settings
 from xdist.scheduler import LoadScopeScheduling
 
+from greywhale.base import state
 from greywhale.base.errors import UserError
 from greywhale.base.runtime import VARIABLE
 from tests.support.sentences import is_sentence
@@ -80,6 +81,7 @@ def _temporary_folder_of_our_own(tmp_path_factory: pytest.TempPathFactory) -> It
         patch.setenv("TMPDIR", folder)  # for children
         patch.setattr(tempfile, "tempdir", folder)
         patch.setenv(VARIABLE, f"{folder}/run")
+        patch.setenv(state.VARIABLE, f"{folder}/state")
         yield
 
 

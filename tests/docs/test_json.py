@@ -20,6 +20,7 @@ from tools.docs.schemas import answers, schema_of, schemas
 # Verb -> ways to call it that print different keys.
 CALLS = {
     "ports": [""],
+    "calibrations": ["", "--back 1"],
     "udev": [""],
     "info": [""],
     "dashboard": ["--no-browser"],

@@ -15,6 +15,7 @@ from greywhale.base.errors import BadUsage, UserError, cut
 from greywhale.base.telling import Column, Part, Row, Sentences, Step, Table, Telling
 from greywhale.base.types import Crc, PerJoint
 from greywhale.board.calibrate import Options, Result, calibrate
+from greywhale.board.calibrate.history import keeping
 from greywhale.board.calibrate.solve import Calibration
 from greywhale.board.device import Device
 from greywhale.board.pots import FULL_SCALE, POTS
@@ -107,7 +108,8 @@ def command(
                 raise UserError("you said no.")
             parameter_file.save(backup, result.before)
         with _saying(f"The board may have the new parameters; to undo: greywhale params restore {backup}"):
-            upload_set(device, result.after)
+            with keeping(device.port, result.before, result.after, "calibrate"):
+                upload_set(device, result.after)
     stored = Sentences(
         [
             f"Stored. To undo: greywhale params restore {backup}",
@@ -115,7 +117,7 @@ def command(
         ]
     )
     undo = Step("params restore", "Undo: take the parameters from before", {"file": str(backup)})
-    steps = [Step("doctor", "Look at the set-up"), undo]
+    steps = [Step("doctor", "Look at the set-up"), undo, Step("calibrations", "See earlier calibrations")]
     show(as_json, _facts(device.port, result, backup), Telling([*(found if yes else []), stored], steps))
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import json
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TypedDict
 
@@ -14,9 +14,10 @@ import click
 from greywhale.base.errors import BadUsage, UserError, counted, cut
 from greywhale.base.formats.units import read_number, unit_of
 from greywhale.base.telling import Column, Part, Row, Sentences, Step, Table, Telling, told
-from greywhale.base.types import Crc
+from greywhale.base.types import Crc, Progress
+from greywhale.board.calibrate.history import keeping
 from greywhale.board.device import Device
-from greywhale.board.upload import UploadFacts, change_parameters, read_parameters
+from greywhale.board.upload import Uploaded, UploadFacts, change_parameters, read_parameters
 from greywhale.cli import completion
 from greywhale.cli.group import Group
 from greywhale.cli.output import FILE, OnPort, json_option, option, overwrite_option, port_option, progress, show, tell
@@ -107,7 +108,7 @@ def set_(settings: tuple[str, ...], port: str | None, as_json: bool) -> None:
             raise BadUsage(f"{name} is given twice; give it once.")
         changes[name] = raw
     with Device(choose_port(port)) as device, progress(brief=True) as report:
-        done = change_parameters(device, changes, report)
+        done = _change(device, read_parameters(device, report), changes, "set", report)
     stored = {name: physical(schema.PARAMETER_BY_NAME[name], raw) for name, raw in changes.items()}
     lines = [f"  {name} = {value:.9g} {schema.PARAMETER_BY_NAME[name].unit}".rstrip() for name, value in stored.items()]
     answer: ParamsSetAnswer = {"port": device.port, **done.as_dict(), "stored": stored}
@@ -159,7 +160,7 @@ def restore(file: Path, missing: str | None, port: str | None, as_json: bool) ->
         if missing == DEFAULTS:
             wanted |= {name: schema.PARAMETER_BY_NAME[name].default for name in silent}
         with progress(brief=True) as report:
-            done = change_parameters(device, wanted, report, running)
+            done = _change(device, running, wanted, "restore", report)
     answer: ParamsRestoreAnswer = {"port": device.port, **done.as_dict(), "not_in_file": list(silent), "kept": kept}
     lines = [_changed(device.port, done.changed)]
     if kept:
@@ -204,6 +205,14 @@ def diff(file: Path, port: str | None, as_json: bool) -> None:
     parts.append(Sentences(lines, near=True))
     restore = Step("params restore", "Give the board what the file says", {"file": str(file)})
     show(as_json, answer, Telling(parts, [restore] if rows else []))
+
+
+def _change(
+    device: Device, running: ParameterTable, changes: Mapping[str, int], why: str, report: Progress
+) -> Uploaded:
+    """Change parameters; a calibration that this changes is kept."""
+    with keeping(device.port, running, running.with_raw(changes), why):
+        return change_parameters(device, changes, report, running)
 
 
 def _difference(name: str, both: Difference) -> Row:

@@ -23,6 +23,7 @@ VERBS = {
     "info": "Tell a board's version, state, faults and counters.",
     "doctor": "Say what is wrong with this set-up, and how to mend it.",
     "calibrate": "From potentiometers mounted anyhow to angles, directions and limits.",
+    "calibrations": "The calibrations that a board has had, and the way back to one.",
     "udev": "Print the rules that let this user open an Arduino's port.",
     "upload": "Run and store the controllers of a controller.toml.",
     "params": "Read and change a board's parameter table.",

@@ -66,6 +66,8 @@ _OTHER_WORDS = re.compile(
 )
 # Linux names ports in these folders by their device's own number, or by the socket that it is plugged into.
 LASTING = (Path("/dev/serial/by-id"), Path("/dev/serial/by-path"))
+_NOT_IN_LABELS = re.compile(r"[^0-9A-Za-z]+")
+MOST_LABEL = 120  # letters of a folder's name: systems take 255 bytes
 _BRIDGES = {0x1A86, 0x0403, 0x10C4, 0x067B}
 
 
@@ -159,6 +161,19 @@ def lasting_name(device: str) -> str:
             if os.path.realpath(link) == real:
                 return str(link)
     return device
+
+
+def lasting_label(device: str) -> str:
+    """A word for the board at a port, fit for a folder's name: its USB serial number, where it has one; else the socket
+    that it is plugged into. All simulated boards are `bench`.
+    """
+    if is_bench(device):
+        return "bench"
+    real = os.path.realpath(device)
+    found = next((one for one in list_ports.comports() if os.path.realpath(one.device) == real), None)
+    if found is not None and found.serial_number:
+        return _NOT_IN_LABELS.sub("-", f"usb-{found.vid:04x}-{found.pid:04x}-{found.serial_number}")[:MOST_LABEL]
+    return _NOT_IN_LABELS.sub("-", lasting_name(device)).strip("-")[-MOST_LABEL:]
 
 
 def board_of(device: str) -> str | None:
