@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from greywhale.base import state
 from greywhale.base.errors import UserError
 from greywhale.dashboard.answers import Answers
 from greywhale.dashboard.folder import Folder
@@ -113,3 +114,26 @@ def test_what_a_board_would_refuse_is_not_predicted(answers: Answers) -> None:
     ):
         with pytest.raises(UserError, match=reason):
             answers.predict(asked)
+
+
+def test_calibrations_that_a_page_brings_are_kept_for_the_board_at_the_port(
+    answers: Answers, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv(state.VARIABLE, str(tmp_path / "state"))
+    raw = list(schema.DEFAULTS)
+    with pytest.raises(UserError, match="no board is there yet"):
+        answers.calibrations()
+    answers.relay.close("/dev/none", "The board went away.")
+    assert answers.calibrations() == {"calibrations": []}
+    answers.keep_calibration({"raw": raw, "board": 1, "why": "found"})
+    raw[schema.PARAMETER_BY_NAME["joint3.limit_max"].index] = 4096
+    answers.keep_calibration({"raw": raw, "board": 1, "why": "page"})
+    answers.keep_calibration({"raw": raw, "board": 1, "why": "back"})
+    first, second = answers.calibrations()["calibrations"]
+    assert (first["why"], second["why"]) == ("found", "page")
+    assert second["changed"] == ["joint 3 (wrist roll): limits -143.2..143.2 to -143.2..57.3 degrees"]
+    assert second["values"]["joint3.limit_max"] == 4096
+    for wrong in ({"raw": raw, "board": 1, "why": "../x"}, {"raw": raw[1:], "board": 1, "why": "page"}):
+        with pytest.raises(UserError, match="must be"):
+            answers.keep_calibration(wrong)
+    assert len(list((tmp_path / "state").rglob("*.toml"))) == 2

@@ -126,3 +126,12 @@ def test_a_new_board_is_calibrated_by_the_page_and_follows(page: Page, stage: St
     live_until(page, stage, "The parameters from before run and are stored again.")
     stage.runs()
     expect(page.get_by_role("button", name="Undo")).to_have_count(0)
+
+    page.locator("summary", has_text="Earlier calibrations (3)").press("Enter")
+    kept = page.locator(".earlier li")
+    expect(kept.nth(0)).to_contain_text("(the newest)")
+    expect(kept.nth(1)).to_contain_text("joint 1 (shoulder pitch): the leader reads the other way")
+    press(page, "Go back to calibration 2")
+    live_until(page, stage, "The board runs and keeps calibration 2 again.")
+    again = stage.runs(*(PARAMETER_BY_NAME[name] for name in names))
+    assert again == found

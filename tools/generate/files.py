@@ -15,6 +15,7 @@ from greywhale.arm.parameters import ArmParameters
 from greywhale.base import sentences
 from greywhale.base.formats import toml_file
 from greywhale.base.formats.kinds import Kind
+from greywhale.board.calibrate import history
 from greywhale.files.controller import Controller, stored_as
 from greywhale.files.log import check, layout, parameters
 from greywhale.protocol.firmware import JOINTS
@@ -76,6 +77,7 @@ def _limits() -> str:
         f"export const CSV_LINE = {_pattern(toml_file.CSV_LINE)};",
         f"export const TOML_LINE = {_pattern(toml_file.TOML_LINE)};",
         _constant("BOUND_WORDS", toml_file.BOUND_WORDS),
+        _constant("CALIBRATION", history.NAMES),
     ]
     return "\n".join(lines)
 

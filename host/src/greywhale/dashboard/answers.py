@@ -11,6 +11,8 @@ from greywhale.arm.parameters import ArmParameters
 from greywhale.base.errors import BadUsage, cut
 from greywhale.base.formats import toml_file
 from greywhale.base.formats.kinds import Kind, kind_of
+from greywhale.board.calibrate import history
+from greywhale.board.calibrate.earlier import earlier
 from greywhale.dashboard import arm_answers
 from greywhale.dashboard.bench import BenchControls
 from greywhale.dashboard.folder import FileFacts, Folder
@@ -25,6 +27,7 @@ from greywhale.files.paper_tables import controller_names, controller_path
 from greywhale.protocol import schema
 from greywhale.protocol.table import ParameterTable
 
+PAGES_REASONS = (history.FOUND, "page", "back")
 _TICK = re.compile("[0-9]{1,10}")
 
 
@@ -67,6 +70,16 @@ class ControllerFacts(TypedDict):
 def _is_whole(value: object) -> TypeGuard[int]:
     """True if it is a whole number such as a board sends; JSON's may have thousands of digits."""
     return type(value) is int and abs(value) < 1 << 32
+
+
+def _table_of(asked: dict[str, Any]) -> ParameterTable:
+    """The whole set that a page names, of a board by its number."""
+    raw, board = asked.get("raw"), asked.get("board")
+    if not isinstance(raw, list) or len(raw) != len(schema.PARAMETERS) or not all(map(_is_whole, raw)):
+        raise BadUsage(f"raw must be {len(schema.PARAMETERS)} whole numbers, a board's parameters.")
+    if not _is_whole(board):
+        raise BadUsage("board must be a number.")
+    return ParameterTable(tuple(raw), schema.Board.of(board))
 
 
 def arm_facts(arm: ArmParameters) -> ArmFacts:
@@ -127,12 +140,27 @@ class Answers:
         return samples_of_log(self.folder.file(file))
 
     def predict(self, asked: dict[str, Any]) -> object:
-        raw, board, file = asked.get("raw"), asked.get("board"), asked.get("file")
-        if not isinstance(raw, list) or len(raw) != len(schema.PARAMETERS) or not all(map(_is_whole, raw)):
-            raise BadUsage(f"raw must be {len(schema.PARAMETERS)} whole numbers, a board's parameters.")
-        if not _is_whole(board) or not (file is None or isinstance(file, str)):
-            raise BadUsage("board must be a number, and file the name of an arm or a model.")
-        return predict(self._arm(file), ParameterTable(tuple(raw), schema.Board.of(board)))
+        table, file = _table_of(asked), asked.get("file")
+        if not (file is None or isinstance(file, str)):
+            raise BadUsage("file must be the name of an arm or a model.")
+        return predict(self._arm(file), table)
+
+    def calibrations(self) -> dict[str, Any]:
+        """The calibrations that the board at the port has had, as far as they were kept."""
+        return {"calibrations": earlier(history.folder_of(self._port()))}
+
+    def keep_calibration(self, asked: dict[str, Any]) -> dict[str, Any]:
+        """Keep the calibration of a set that a page read from the board, or gave it."""
+        why = asked.get("why")
+        if why not in PAGES_REASONS:
+            raise BadUsage(f"why must be one of {', '.join(PAGES_REASONS)}.")
+        history.keep(history.folder_of(self._port()), _table_of(asked), why)
+        return {}
+
+    def _port(self) -> str:
+        if not (port := self.relay.link["port"]):
+            raise BadUsage(self.relay.link["sentence"] or "no board is there yet.")
+        return str(port)
 
     def change_bench(self, wish: dict[str, Any], page: str) -> dict[str, Any]:
         """Change the bench as a page wishes, and return its controls, as `BenchControls.change` says."""

@@ -58,6 +58,8 @@ def application(answers: Answers, page: Path, access: Access, port: int) -> Guar
         Route(UPLOAD, _upload(answers.folder), methods=["PUT"]),
         Route("/questions", _endpoint(answers.questions), methods=["POST"]),
         Route("/predict", _endpoint(answers.predict), methods=["POST"]),
+        Route("/calibrations", _endpoint(lambda asked: answers.calibrations()), methods=["GET"]),
+        Route("/calibrations", _endpoint(answers.keep_calibration), methods=["POST"]),
         Route("/jobs", _endpoint(lambda asked: answers.jobs.listed()), methods=["GET"]),
         Route("/jobs", _endpoint(lambda asked: answers.jobs.start(asked, asked.get(PAGE_ID, ""))), methods=["POST"]),
         Route("/jobs/{id}", _endpoint(lambda asked: answers.jobs.stop(asked["id"])), methods=["DELETE"]),

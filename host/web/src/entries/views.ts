@@ -20,13 +20,19 @@ import { Way } from "../views/start/way";
 import { Countdown } from "../views/verbs/countdown";
 import { DoView } from "../views/verbs/view";
 import type { View } from "../views/view";
-import { tabStore } from "../parts/storage";
+import { browserStore, tabStore } from "../parts/storage";
 import type { BoardPort } from "../session/port";
 import type { Bench, Predictor, Services, Tuner } from "../session/services";
 import type { Session } from "../session/session";
+import { BrowserCalibrations } from "../sources/browser_calibrations";
 
 const SHOWN = "greywhale-view"; // the key of the view that this tab shows
 const BENCH_FIRMWARE = "The board runs the very image that a real Mega gets. Write it anew through its bootloader, or one of your own.";
+
+/** Those that this browser keeps, of boards at a port or of the simulated one. */
+function ownCalibrations(atPort: boolean): BrowserCalibrations {
+  return new BrowserCalibrations(browserStore, atPort ? "greywhale-calibrations" : "greywhale-calibrations-bench");
+}
 
 /** The sources of a page; null is one that it has not. */
 export type Sources = {
@@ -70,7 +76,7 @@ export class Views {
       new StartView(arm, beside, new Way(session, services, this.paths(), sources.docs)),
       ...(port ? [new ConnectView(session, port)] : []),
       new LiveView(session, services ? inFolder(services) : undefined), this.controller, new ParametersView(session),
-      new CalibrateView(session, calibration, this.countdown, bench),
+      new CalibrateView(session, calibration, this.countdown, services?.calibrations ?? ownCalibrations(port !== null), bench),
       ...(this.verbs ? [this.verbs] : []),
       ...(services ? [new FilesView(session, services, (verb, given) => this.openVerb(verb, given))] : []),
       ...(bench && leaderControl ? [new BenchView(session, bench, leaderControl, arm, services, this.benchFirmware())] : []),

@@ -11,6 +11,7 @@ export const LARGEST_INTEGER = 9223372036854775808n;
 export const CSV_LINE = new RegExp("^(?:\"?time_s\"?[,;\\t])");
 export const TOML_LINE = new RegExp("^(?:[ \\t]*((\"[^\"]*\"|'[^']*'|[A-Za-z0-9_-]+)[ \\t]*[.=]|\\[\\[?[ \\t]*[\"'A-Za-z0-9_-]))");
 export const BOUND_WORDS = {"minimum": "at least", "exclusiveMinimum": "greater than", "maximum": "at most", "exclusiveMaximum": "less than"};
+export const CALIBRATION = ["leader0.zero", "leader0.scale", "leader1.zero", "leader1.scale", "leader2.zero", "leader2.scale", "leader3.zero", "leader3.scale", "follower0.zero", "follower0.scale", "follower1.zero", "follower1.scale", "follower2.zero", "follower2.scale", "follower3.zero", "follower3.scale", "joint0.limit_min", "joint0.limit_max", "joint0.motor_sign", "joint1.limit_min", "joint1.limit_max", "joint1.motor_sign", "joint2.limit_min", "joint2.limit_max", "joint2.motor_sign", "joint3.limit_min", "joint3.limit_max", "joint3.motor_sign"];
 
 export const KINDS = {
   controller: {"words": "a controller file", "taker": "greywhale upload", "inside": ["kp", "kd", "ki", "ku", "sets"]},

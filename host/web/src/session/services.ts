@@ -218,7 +218,25 @@ export interface Tuner {
   stop(): void;
 }
 
+/** A calibration that a board has had. `changed` says in words what it changed against the one before. */
+export type KeptCalibration = {
+  readonly number: number;
+  readonly when: string; // ISO 8601
+  readonly why: string; // "found", "page", "back", or a verb
+  readonly changed: readonly string[];
+  readonly values: Readonly<Record<string, number>>; // raw, by parameter; none where its file is damaged
+};
+
+/** The calibrations of the board that is connected; none is ever written over. */
+export interface Calibrations {
+  /** The oldest first. */
+  list(): Promise<readonly KeptCalibration[]>;
+  /** Keeps that of a whole set in raw values, unless the newest is the same. */
+  keep(raw: readonly number[], board: number, why: "found" | "page" | "back"): Promise<void>;
+}
+
 export interface Services {
+  readonly calibrations: Calibrations;
   readonly jobs: Jobs;
   readonly bench: Bench;
   readonly files: Files;

@@ -1,7 +1,8 @@
 // The host behind the dashboard's server, over HTTP: every request carries the token, every error is a sentence.
 
 import type {
-  ArmAnswers, ArmDescription, Bench, Files, Heading, Services, HostState, Job, Jobs, Model, Prediction, Predictor, Tuner, Verb,
+  ArmAnswers, ArmDescription, Bench, Calibrations, Files, Heading, HostState, Job, Jobs, KeptCalibration, Model, Prediction, Predictor,
+  Services, Tuner, Verb,
 } from "../session/services";
 import { HostTuner } from "./host_tuner";
 
@@ -35,6 +36,11 @@ export class HostServices implements Services {
     },
     rename: (name, to) => this.ask<unknown>("POST", "/file", { name, to }).then(() => undefined),
     remove: (name) => this.ask<unknown>("DELETE", fileAddress(name)).then(() => undefined),
+  };
+
+  readonly calibrations: Calibrations = {
+    list: async () => (await this.ask<{ calibrations: KeptCalibration[] }>("GET", "/calibrations")).calibrations,
+    keep: (raw, board, why) => this.ask<unknown>("POST", "/calibrations", { raw, board, why }).then(() => undefined),
   };
 
   readonly predictor: Predictor = {

@@ -11,11 +11,12 @@ import { grey } from "../../parts/grey";
 import { sentenceOf } from "../../parts/sentence";
 import { FULL_SCALE, COUNT14_PER_COUNT, potParameter, potsOf } from "../../session/pots";
 import { JOINT_NAMES, JOINTS } from "../../session/samples";
-import type { Bench, HandsWish } from "../../session/services";
+import type { Bench, Calibrations, HandsWish, KeptCalibration } from "../../session/services";
 import type { Session } from "../../session/session";
 import { PotBars } from "../pots/bars";
 import type { Countdown } from "../verbs/countdown";
 import type { View } from "../view";
+import { earlierList, withCalibration } from "./earlier";
 import { Hands } from "./hands";
 import { Trial } from "./pulses";
 import { foundTables, motorInWords } from "./result";
@@ -63,7 +64,7 @@ export class CalibrateView implements View {
   /** `code` brings the rules of a calibration, once they are asked for; `bench` has hands, where the arm is simulated. */
   constructor(
     private readonly session: Session, private readonly code: () => Promise<ArrayBuffer>,
-    private readonly countdown: Pick<Countdown, "before">, bench: Bench | null = null,
+    private readonly countdown: Pick<Countdown, "before">, private readonly kept: Calibrations, bench: Bench | null = null,
   ) {
     this.hands = bench && new Hands(session, bench);
     this.bars = new PotBars(session);
@@ -77,7 +78,10 @@ export class CalibrateView implements View {
   }
 
   enter(): void {
-    void this.attempt(async () => void await this.session.readParameters());
+    void this.attempt(async () => {
+      await this.session.readParameters();
+      await this.showEarlier();
+    });
   }
 
   leave(): void {
@@ -193,6 +197,39 @@ export class CalibrateView implements View {
         this.action("Begin", () => this.begin(second.value === "same" ? DEGREE * Number(track.value) : null), "Begin with the first sweep", true),
         ...(this.stored ? [this.action("Undo", () => this.undo(), "Run and store the parameters from before this calibration")] : []),
       ]);
+    void this.attempt(() => this.showEarlier());
+  }
+
+  /** Below the beginning, if any was kept. */
+  private async showEarlier(): Promise<void> {
+    if (this.walk || !this.session.link.open) return;
+    const found = await this.kept.list();
+    if (this.walk || !found.length) return;
+    const usual = "Run and store it; controllers and everything else stay";
+    const list = earlierList(found, (one) => void this.attempt(() => this.goBack(one)), (made) => {
+      this.actions = [...this.actions, { button: made, whyNot: () => this.whyNot(), usual }];
+    });
+    this.body.querySelector(".earlier")?.remove();
+    this.body.append(list);
+    this.refresh();
+  }
+
+  private async goBack(one: KeptCalibration): Promise<void> {
+    const before = await this.session.readParameters();
+    await this.storeKept(before, withCalibration(before, one), "back");
+    this.stored = null;
+    this.showBeginning(`The board runs and keeps calibration ${one.number} again.`);
+  }
+
+  /** Runs and stores a set, and keeps the calibrations before and after. */
+  private async storeKept(before: readonly number[], after: readonly number[], why: "page" | "back"): Promise<void> {
+    await this.alone("The board stores it.", async () => {
+      const { board } = this.session.hello!;
+      await this.kept.keep(before, board, "found");
+      await this.session.apply(after);
+      await this.session.store();
+      await this.kept.keep(after, board, why);
+    });
   }
 
   private async begin(track: number | null): Promise<void> {
@@ -372,10 +409,7 @@ export class CalibrateView implements View {
   }
 
   private async store(found: Found): Promise<void> {
-    await this.alone("The board stores it.", async () => {
-      await this.session.apply(found.after);
-      await this.session.store();
-    });
+    await this.storeKept(found.before, found.after, "page");
     this.stored = found;
     this.showBeginning();
     this.showPanel("Stored", "The board is calibrated. An arm file needs these potentiometers too: greywhale arm match arm.toml", [], [
@@ -387,11 +421,8 @@ export class CalibrateView implements View {
   }
 
   private async undo(): Promise<void> {
-    const { before } = this.stored!;
-    await this.alone("The board stores what it had.", async () => {
-      await this.session.apply(before);
-      await this.session.store();
-    });
+    const { before, after } = this.stored!;
+    await this.storeKept(after, before, "back");
     this.stored = null;
     this.showBeginning("The parameters from before run and are stored again.");
   }
