@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any
 from xml.etree import ElementTree as xml
 
+import numpy as np
 import pytest
 
 from greywhale.arm.export import JOINT_IDS, mjcf, urdf
+from greywhale.arm.plants import column, plant_row
 from greywhale.files.arm import default_arm
 
 
@@ -47,3 +50,38 @@ def test_only_a_file_that_holds_the_motors_is_called_identified(make_arm: Any) -
     arm = make_arm("white_box").model_copy(update={"name": "my arm, identified"})
     assert xml.fromstring(mjcf(arm)).get("model") == "my arm, identified"
     assert xml.fromstring(urdf(arm)).get("name") == "my arm"
+
+
+def test_each_joint_says_what_the_logs_allow_of_it(make_arm: Any) -> None:
+    """95 % of the drawn plants, beside the number itself; a number that nobody doubts is not named."""
+    arm = make_arm("worn")
+    drawn = np.tile(plant_row(arm), (201, 1))
+    inertia, gap = arm.actuator(1).inertia, arm.joint[1].gear.half_gap
+    drawn[:, column("inertia", 1)] *= np.linspace(0.8, 1.2, 201)
+    drawn[:, column("half_gap", 1)] *= np.linspace(0.0, 2.0, 201)
+    for text in (mjcf(arm, drawn), mjcf(arm, drawn, gears=True), urdf(arm, drawn)):
+        comments = [one for one in re.findall("<!-- (.*) -->", text) if "logs allow" in one]
+        assert comments == [
+            "95 % of the arms that the logs allow: "
+            f"armature {inertia:.4g} [{0.81 * inertia:.4g}, {1.19 * inertia:.4g}] kg m2, "
+            f"half of the gear's gap {gap:.4g} [{0.05 * gap:.4g}, {1.95 * gap:.4g}] rad."
+        ]
+        assert text.index(JOINT_IDS[0]) < text.index(comments[0]) < text.index(JOINT_IDS[2])
+    assert "logs allow" not in mjcf(arm) + urdf(arm)
+
+
+def test_a_gear_is_a_second_hinge_with_the_gap_as_its_range(make_arm: Any) -> None:
+    arm = make_arm("worn", joint_3={"gear": {"half_gap": 0.0, "stiffness": 0.0}})
+    model = xml.fromstring(mjcf(arm, gears=True))
+    hinges = {one.get("name"): one for one in model.iterfind(".//body/joint")}
+    assert set(hinges) == {*JOINT_IDS, *(f"{name}_gear" for name in JOINT_IDS[:3])}
+    for index, name in enumerate(JOINT_IDS[:3]):
+        gear = arm.joint[index].gear
+        assert numbers(hinges[f"{name}_gear"], "range") == [-gear.half_gap, gear.half_gap]
+        assert numbers(hinges[f"{name}_gear"], "damping") == [gear.drag]
+        assert hinges[name].get("range") is None, "the stops are the link's"
+    links = {one.get("name"): numbers(one, "range") for one in model.iterfind("tendon/fixed")}
+    assert links == {
+        f"{name}_link": [arm.joint[n].stops.min, arm.joint[n].stops.max] for n, name in enumerate(JOINT_IDS[:3])
+    }
+    assert "gaps" not in mjcf(arm, gears=True)

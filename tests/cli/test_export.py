@@ -55,6 +55,7 @@ def test_a_log_becomes_the_named_file(tmp_path: Path) -> None:
         (["log.csv", "--to", "npz", "--urdf", "default"], "exactly one of"),
         (["log.csv", "--to", "npz", "--joint", "1"], "--joint does not go with --to npz"),
         (["--urdf", "default", "--mjcf", "default"], "exactly one of"),
+        (["--urdf", "default", "--gears"], "--gears goes with --mjcf"),
         (["--urdf", "default", "--joint", "1"], "--joint goes with --fis"),
     ],
 )

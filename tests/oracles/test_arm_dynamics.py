@@ -17,6 +17,7 @@ from arm_engines import MuJoCo, Pinocchio, arm_with_tip, random_states, without
 from greywhale.arm import Arm, ArmParameters
 from greywhale.arm.export import mjcf, urdf
 from greywhale.arm.from_urdf import import_urdf
+from greywhale.arm.plants import plant_row
 from greywhale.files.arm import default_arm, load_arm
 from tests.arm.reframed import reframed
 
@@ -62,10 +63,17 @@ def test_averaging_link_3_changes_no_entry_much() -> None:
     assert 1e-5 < max(changes) < 3.3e-5
 
 
-def loaded(parameters: ArmParameters) -> tuple[mujoco.MjModel, mujoco.MjData]:
+def loaded(parameters: ArmParameters, gears: bool = False) -> tuple[mujoco.MjModel, mujoco.MjData]:
     """The exported file as MuJoCo has it, with the step and the integrator that the file says."""
-    model = mujoco.MjModel.from_xml_string(mjcf(parameters))
+    drawn = plant_row(parameters) * np.array([[0.9], [1.1]])  # the comments disturb nobody
+    model = mujoco.MjModel.from_xml_string(mjcf(parameters, drawn, gears))
     return model, mujoco.MjData(model)
+
+
+def angles(data: mujoco.MjData) -> np.ndarray:
+    """The links' angles (4,) rad: a gear turns behind its motor."""
+    bodies = data.model.jnt_bodyid
+    return np.array([data.qpos[bodies == body].sum() for body in np.unique(bodies)])
 
 
 def rigid(arm: ArmParameters, friction: bool) -> ArmParameters:
@@ -118,14 +126,50 @@ def test_dry_friction_is_nearly_the_same(name: str) -> None:
     assert 1e-3 < apart(load_arm(name), 1e-5) < 0.3
 
 
-def test_the_exported_stops_hold() -> None:
+def off_in_steps(parameters: ArmParameters, gears: bool) -> np.ndarray:
+    """The greatest distance of each joint (4,) rad from ours in 1 s of steps of voltage: up, off, down, off."""
+    model, data = loaded(parameters, gears)
+    arm = Arm(parameters, longest_step_s=1e-5)
+    worst = np.zeros(4)
+    for block in range(40):
+        volts = np.array([4.0, 6.0, 4.0, 4.0]) * (1.0, 0.0, -1.0, 0.0)[block // 10]
+        data.ctrl[:] = volts
+        for _ in range(round(0.025 / model.opt.timestep)):
+            mujoco.mj_step(model, data)
+        worst = np.maximum(worst, np.abs(arm.step(volts, 0.025) - angles(data)))
+    return worst
+
+
+@pytest.mark.parametrize("name", ["default", "worn"])
+def test_gears_with_a_gap_and_teeth_answer_a_step_as_ours_do(name: str) -> None:
+    """The base, which nothing pulls to one side, may lie anywhere in its gap of 4 mrad to either side."""
+    arm = load_arm(name)
+    friction = rigid(arm, friction=True)
+    kept = tuple(one.model_copy(update={"gear": arm.joint[n].gear}) for n, one in enumerate(friction.joint))
+    worn = friction.model_copy(update={"joint": kept})
+    assert "The whole arm is in this file." in mjcf(worn, gears=True)
+    with_gears, without_gears = off_in_steps(worn, True), off_in_steps(worn, False)
+    assert (with_gears < [4.5e-3, 2.5e-3, 1.5e-3, 1e-3]).all(), with_gears
+    assert (without_gears > 6e-3).all(), "so they do matter"
+
+
+def test_teeth_that_are_much_stiffer_get_a_shorter_step() -> None:
+    """At the usual step MuJoCo would shake them apart."""
+    arm = rigid(load_arm("default"), friction=True)
+    data = arm.model_dump()
+    data["joint"][2]["gear"] = {"half_gap": 0.001, "stiffness": 5e3, "damping": 40.0, "drag": 0.05}
+    assert (off_in_steps(ArmParameters.model_validate(data, strict=False), gears=True) < 2e-3).all()
+
+
+@pytest.mark.parametrize("gears", [False, True])
+def test_the_exported_stops_hold(gears: bool) -> None:
     parameters = load_arm("default")
-    model, data = loaded(parameters)
+    model, data = loaded(parameters, gears)
     data.ctrl[:] = parameters.drive.supply
     for _ in range(4000):
         mujoco.mj_step(model, data)
-        assert (data.qpos < 2.55 + 5e-3).all()
-    assert data.qpos == pytest.approx([2.55] * 4, abs=1e-3)
+        assert (angles(data) < 2.55 + 5e-3).all()
+    assert angles(data) == pytest.approx([2.55] * 4, abs=1e-3)
     data.ctrl[:] = 1e3
     mujoco.mj_step(model, data)
     gains = [parameters.actuator(joint).torque_per_volt for joint in range(4)]

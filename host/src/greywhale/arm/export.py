@@ -9,7 +9,12 @@ import math
 from dataclasses import dataclass
 from xml.etree import ElementTree as xml
 
+import numpy as np
+
+from greywhale.arm.doubt import doubt_of
 from greywhale.arm.parameters import ArmParameters, Link
+from greywhale.arm.plant import Arm
+from greywhale.arm.plants import COLUMNS, Plants
 
 LINK_NAMES = ("base", "upper_arm", "wrist", "hand")
 JOINT_IDS = ("base_yaw", "shoulder_pitch", "wrist_pitch", "wrist_roll")
@@ -22,6 +27,10 @@ _STIFF = {
     "solreflimit": "0.0005 1",
     "solimplimit": "0.9999 0.9999 0.001 0.5 2",
 }
+_TEETH_IMPEDANCE = 1e-3
+_RADIANS_PER_STEP = 1.0  # of the fastest motion of teeth; from 2.8 on RK4 makes it grow
+_STOPS = {key: _STIFF[key] for key in ("solreflimit", "solimplimit")}
+_SURE: Plants = np.zeros((0, COLUMNS))  # no plants but the arm itself
 _RODS = "Each link is drawn as a rod of its length, its mass and its inertia about its own line."
 
 
@@ -37,10 +46,11 @@ class _Body:
     radius: float  # of a rod of its mass with its inertia about its line
 
 
-def urdf(parameters: ArmParameters) -> str:
+def urdf(parameters: ArmParameters, drawn: Plants = _SURE) -> str:
     """The arm as URDF; joint limits are the stops, effort and velocity what the motor gives at the full supply.
 
-    A comment names what is missing. Joints that are not in use are fixed ones.
+    A comment names what is missing. Joints that are not in use are fixed ones. `drawn` plants (n, columns), which the
+    logs allow as well, give each joint a comment with intervals.
     """
     robot = xml.Element("robot", name=parameters.name.removesuffix(", identified"))  # it holds too little of that
     robot.append(xml.Comment(f" {_RODS} {_left_out(parameters, 'inertia of the motors')} "))
@@ -62,6 +72,7 @@ def urdf(parameters: ArmParameters) -> str:
         upright = (math.pi / 2, 0.0, 0.0) if index == 0 else (0.0, 0.0, 0.0)
         xml.SubElement(joint, "origin", xyz=_text(body.origin), rpy=_text(upright))
         if not parameters.joint[index].fixed:
+            _add_doubt(joint, parameters, index, drawn)
             _add_turning(joint, parameters, index)
         parent = LINK_NAMES[index]
     return _document(robot)
@@ -95,32 +106,46 @@ def _add_turning(joint: xml.Element, parameters: ArmParameters, index: int) -> N
     xml.SubElement(joint, "dynamics", damping=repr(actuator.damping), friction=repr(friction))
 
 
-def mjcf(parameters: ArmParameters) -> str:
+def _add_doubt(parent: xml.Element, parameters: ArmParameters, index: int, drawn: Plants) -> None:
+    if doubt := doubt_of(parameters, index, drawn):
+        parent.append(xml.Comment(f" {doubt} "))
+
+
+def mjcf(parameters: ArmParameters, drawn: Plants = _SURE, gears: bool = False) -> str:
     """The arm as MJCF: links, stops, friction and motors, whose controls are voltages.
 
     The link of a joint that is not in use is welded to the one before, without a joint. A comment says what is missing.
+    `drawn` as for `urdf`. With `gears`, a joint whose gear has teeth becomes two hinges: the motor's, and one for the
+    gear, which turns freely within the gap and on teeth that bend beyond it; the link's angle is their sum.
     """
     model = xml.Element("mujoco", model=parameters.name)
-    model.append(xml.Comment(f" Controls are volts. {_RODS} {_left_out(parameters)} "))
+    model.append(xml.Comment(f" Controls are volts. {_RODS} {_left_out(parameters, gears=gears)} "))
     xml.SubElement(model, "compiler", angle="radian")
     gravity = _text((0.0, 0.0, -parameters.gravity))
-    xml.SubElement(model, "option", gravity=gravity, timestep=repr(MJCF_STEP_S), integrator="RK4")
+    lightness = _lightness(parameters) if gears else []
+    step = _step(parameters, lightness)
+    xml.SubElement(model, "option", gravity=gravity, timestep=repr(step), integrator="RK4")
     default = xml.SubElement(model, "default")
     xml.SubElement(default, "joint", _STIFF)
     xml.SubElement(default, "geom", type="cylinder", contype="0", conaffinity="0", group="1", mass="0")
     parent = xml.SubElement(model, "worldbody")
-    actuators = xml.SubElement(model, "actuator")
+    tendons, actuators = xml.SubElement(model, "tendon"), xml.SubElement(model, "actuator")
     for index, body in enumerate(_bodies(parameters)):
         frame = {"name": LINK_NAMES[index], "pos": _text(body.origin)}
         if index == 0:
             frame["euler"] = _text((math.pi / 2, 0.0, 0.0))
         parent = xml.SubElement(parent, "body", frame)
         if index in parameters.joints_in_use:
+            _add_doubt(parent, parameters, index, drawn)
             _add_motor(parent, actuators, parameters, index)
+            if gears and parameters.joint[index].gear.stiffness:
+                _add_gear(parent, tendons, parameters, index, lightness[index])
         inertia = _text(body.inertia)
         xml.SubElement(parent, "inertial", pos=_text(body.centre), mass=repr(body.mass), diaginertia=inertia)
         xml.SubElement(parent, "geom", fromto=_text((0.0, 0.0, 0.0, *body.end)), size=repr(body.radius))
     xml.SubElement(parent, "site", name="tip", pos=_text(body.end))
+    if not len(tendons):
+        model.remove(tendons)
     return _document(model)
 
 
@@ -153,7 +178,45 @@ def _add_motor(body: xml.Element, actuators: xml.Element, parameters: ArmParamet
     )
 
 
-def _left_out(parameters: ArmParameters, *more: str) -> str:
+def _add_gear(body: xml.Element, tendons: xml.Element, parameters: ArmParameters, index: int, light: float) -> None:
+    """A second hinge behind the motor's, with the grease's drag and the gap as its range; beyond it push the teeth.
+
+    MuJoCo wants their stiffness and damping times `light`, what the hinge's acceleration is for a torque of 1 N m, and
+    with an impedance near 0 adds nothing of its own. A tendon holds the link at its stops.
+    """
+    motor = body.findall("joint")[-1]
+    name, gear = JOINT_IDS[index], parameters.joint[index].gear
+    stops = {key: motor.attrib.pop(key) for key in ("limited", "range")}
+    turns = {
+        "name": f"{name}_gear",
+        "type": "hinge",
+        "axis": _text(_AXES[index]),
+        "damping": repr(gear.drag),
+        "limited": "true",
+        "range": _text((-gear.half_gap, gear.half_gap)),
+        "solreflimit": _text((-gear.stiffness * light, -gear.damping * light)),
+        "solimplimit": _text((_TEETH_IMPEDANCE, _TEETH_IMPEDANCE, 0.001, 0.5, 2)),
+    }
+    xml.SubElement(body, "joint", turns)
+    link = xml.SubElement(tendons, "fixed", {"name": f"{name}_link", **stops, **_STOPS})
+    for one in (name, f"{name}_gear"):
+        xml.SubElement(link, "joint", joint=one, coef="1")
+
+
+def _lightness(parameters: ArmParameters) -> list[float]:
+    """The acceleration of each joint's gear for a torque of 1 N m on its teeth, rad/(s^2 N m), the arm at 0."""
+    links = np.linalg.inv(Arm(parameters).body.mass_matrix(np.zeros(len(parameters.joint))))
+    return [float(links[joint, joint]) + 1.0 / parameters.actuator(joint).inertia for joint in range(len(links))]
+
+
+def _step(parameters: ArmParameters, lightness: list[float]) -> float:
+    """The simulator's step in s: short enough for the stiffest teeth, or for those that damp most."""
+    gears = [(parameters.joint[joint].gear, lightness[joint]) for joint in parameters.joints_in_use if lightness]
+    rates = [max(math.sqrt(gear.stiffness * light), gear.damping * light) for gear, light in gears]
+    return min([MJCF_STEP_S, *(_RADIANS_PER_STEP / rate for rate in rates if rate)])
+
+
+def _left_out(parameters: ArmParameters, *more: str, gears: bool = False) -> str:
     """A phrase for each thing that the arm has and the file cannot hold."""
     joints = [parameters.joint[index] for index in parameters.joints_in_use]
     pots = parameters.follower_pots.joint
@@ -161,7 +224,7 @@ def _left_out(parameters: ArmParameters, *more: str) -> str:
         "friction at rest above the sliding one": any(one.friction.breakaway > one.friction.coulomb for one in joints),
         "friction that grows with the load": any(one.friction.load for one in joints),
         "creep": any(one.friction.creep_velocity for one in joints),
-        "the gears' gaps and teeth": any(one.gear.stiffness for one in joints),
+        "the gears' gaps and teeth": any(one.gear.stiffness for one in joints) and not gears,
         "volts that drivers lose": any(one.driver.lost_up or one.driver.lost_down for one in joints),
         "the supply's resistance": bool(parameters.drive.supply_resistance),
         "potentiometers": any(one.noise or one.play or one.lag or one.linearity for one in pots),

@@ -16,6 +16,8 @@ from greywhale.files.exchange.recording import ExportOptions, Recording
 from greywhale.files.log import read_log
 from greywhale.files.outputs import require_new
 
+DRAWS = 2000  # plants of a model, of which the file says the intervals
+
 
 class ExportAnswer(TypedDict):
     written: list[str]  # files
@@ -36,6 +38,7 @@ _LINES = [f"{name}, {one.does.rstrip('.')}" for name, one in FORMATS.items()]
 )
 @option("--urdf", metavar="ARM.toml", help="An arm for ROS, Pinocchio and others.")
 @option("--mjcf", metavar="ARM.toml", help="An arm for MuJoCo.")
+@option("--gears", is_flag=True, help="With --mjcf: a second hinge a joint, with the gear's gap and teeth.")
 @option("--out", "-o", required=True, type=FILE, help="The file to write.")
 @option("--joint", type=click.IntRange(0, 3), help="With --fis: this joint only, into OUT itself. --to bam needs it.")
 @option("--mass", type=float, help="With --to bam: the pendulum's mass, kg.")
@@ -48,6 +51,7 @@ def command(
     fis: Path | None,
     urdf: str | None,
     mjcf: str | None,
+    gears: bool,
     out: Path,
     joint: int | None,
     mass: float | None,
@@ -66,6 +70,8 @@ def command(
         raise click.UsageError("Give logs and --to, or exactly one of --fis, --urdf and --mjcf.")
     if to is None and (mass is not None or length is not None):
         raise click.UsageError("--mass and --length go with --to bam.")
+    if gears and mjcf is None:
+        raise click.UsageError("--gears goes with --mjcf: the other formats have no word for them.")
     if to is not None:
         written = _export_logs(logs, to, out, ExportOptions(joint, mass, length), overwrite)
     elif fis is not None:
@@ -73,7 +79,7 @@ def command(
     elif joint is not None:
         raise click.UsageError("--joint goes with --fis: an arm is written whole.")
     else:
-        written = [_export_arm(urdf, mjcf, out, overwrite)]
+        written = [_export_arm(urdf, mjcf, gears, out, overwrite)]
     answer: ExportAnswer = {"written": [str(path) for path in written]}
     show(as_json, answer, "\n".join(answer["written"]))
 
@@ -104,12 +110,19 @@ def _export_fis(source: Path, out: Path, joint: int | None, overwrite: bool) -> 
     return list(files.values())
 
 
-def _export_arm(urdf: str | None, mjcf: str | None, out: Path, overwrite: bool) -> Path:
+def _export_arm(urdf: str | None, mjcf: str | None, gears: bool, out: Path, overwrite: bool) -> Path:
     from greywhale.arm import export
+    from greywhale.arm.plants import plant_row
     from greywhale.files.arm import load_arm
 
     refuse_inputs(out, urdf, mjcf)
     require_new(overwrite, out)
-    text = export.urdf(load_arm(urdf)) if urdf is not None else export.mjcf(load_arm(str(mjcf)))
+    arm = load_arm(urdf if urdf is not None else str(mjcf))
+    drawn = plant_row(arm)[None]
+    if "covariance" in (arm.identification or {}):
+        from greywhale.identify import sampled_plants
+
+        drawn = sampled_plants(arm, DRAWS)
+    text = export.urdf(arm, drawn) if urdf is not None else export.mjcf(arm, drawn, gears)
     write_text(out, text)
     return out
