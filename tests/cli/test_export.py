@@ -9,18 +9,27 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
+from greywhale.base.errors import UserError
 from greywhale.cli.export import command
+from greywhale.files import fis
 from greywhale.files.log import read_log
 from greywhale.files.paper_tables import paper_table
 from greywhale.fuzzy.export_fis import fis_text
+from greywhale.fuzzy.export_header import make_header
 from greywhale.fuzzy.settings import load_joints
+from greywhale.fuzzy.table_law import from_fis
 from tests.cli.example_log import write_log
+from tools.support.fis_files import table
+
+
+def run_json(*arguments: str) -> str:
+    result = CliRunner().invoke(command, [*arguments, "--json"], catch_exceptions=False)
+    assert result.exit_code == 0, result.output
+    return result.stdout
 
 
 def run(*arguments: str) -> dict[str, list[str]]:
-    result = CliRunner().invoke(command, [*arguments, "--json"], catch_exceptions=False)
-    assert result.exit_code == 0, result.output
-    answer: dict[str, list[str]] = json.loads(result.stdout)
+    answer: dict[str, list[str]] = json.loads(run_json(*arguments))
     return answer
 
 
@@ -56,7 +65,7 @@ def test_a_log_becomes_the_named_file(tmp_path: Path) -> None:
         (["log.csv", "--to", "npz", "--joint", "1"], "--joint does not go with --to npz"),
         (["--urdf", "default", "--mjcf", "default"], "exactly one of"),
         (["--urdf", "default", "--gears"], "--gears goes with --mjcf"),
-        (["--urdf", "default", "--joint", "1"], "--joint goes with --fis"),
+        (["--urdf", "default", "--joint", "1"], "--joint goes with a controller"),
     ],
 )
 def test_what_to_write_must_be_clear(tmp_path: Path, arguments: list[str], complaint: str) -> None:
@@ -64,4 +73,30 @@ def test_what_to_write_must_be_clear(tmp_path: Path, arguments: list[str], compl
     result = CliRunner().invoke(command, [*arguments, "--out", str(out)])
     assert getattr(result.exception, "exit_code", result.exit_code) == 2
     assert complaint in f"{result.output}{result.exception}"
+    assert not out.exists()
+
+
+def test_a_fis_becomes_a_header(tmp_path: Path) -> None:
+    (tmp_path / "five.fis").write_text(table(5))
+    out = tmp_path / "law.h"
+    result = CliRunner().invoke(command, ["--header", str(tmp_path / "five.fis"), "--out", str(out)])
+    assert result.exit_code == 0, result.output
+    assert "463 bytes of tables; within 1.26 LSB of the exact centroid (proven)" in result.output
+    assert out.read_text() == make_header(from_fis(fis.parse(table(5)), ""), "five.fis", "law.h").text
+
+
+def test_a_joint_becomes_a_header_with_its_gains(tmp_path: Path) -> None:
+    table_10 = str(paper_table("table_10"))
+    out = tmp_path / "law.h"
+    (facts,) = json.loads(run_json("--header", table_10, "--joint", "1", "--out", str(out)))["headers"]
+    assert facts["largest_lsb"] <= facts["bound_lsb"]
+    assert "inline PdI controller()" in out.read_text()
+
+
+def test_no_header_of_a_law_with_a_hole(tmp_path: Path) -> None:
+    (tmp_path / "hole.fis").write_text(table(3).replace("1 3, 2 (1) : 1\n", ""))
+    out = tmp_path / "law.h"
+    result = CliRunner().invoke(command, ["--header", str(tmp_path / "hole.fis"), "--out", str(out)])
+    assert isinstance(result.exception, UserError)
+    assert "hole.fis: the rules have a hole: at error = -3 and change = " in result.exception.message
     assert not out.exists()

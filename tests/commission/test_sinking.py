@@ -30,7 +30,8 @@ def sinking(volts: float, leader_rad: float) -> Log:
     follower = np.array([plant.step(row, 1e-3) for row in voltage], dtype=np.float64)
     leader = np.tile(POSE, (TICKS, 1)) + leader_rad
     state = np.full(TICKS, "following")
-    return Log("log.csv", Origin(), np.linspace(0.0, 1e-3 * TICKS, TICKS, endpoint=False), leader, follower, voltage, state, 0, False)
+    time = np.linspace(0.0, 1e-3 * TICKS, TICKS, endpoint=False)
+    return Log("log.csv", Origin(), time, leader, follower, voltage, state, 0, False)
 
 
 def hold_v(pose: np.ndarray) -> float:

@@ -31,6 +31,8 @@ from greywhale.files.leader import save_leader
 from greywhale.files.log import LogWriter, read_log
 from greywhale.files.log.layout import Origin
 from greywhale.files.trajectory import Trajectory
+from greywhale.fuzzy import load_joints
+from greywhale.fuzzy.export_fis import export_fis
 from greywhale.identify import identify
 from greywhale.loop import human_reaches
 from greywhale.loop.leader_motions import poses
@@ -87,6 +89,9 @@ def yours(tmp_path_factory: pytest.TempPathFactory) -> Path:
     write_model(folder / "model.toml")
     for name in ("controller.toml", "table.toml"):
         shutil.copy(TABLES / "table_10.toml", folder / name)
+    export_fis(
+        folder / "sets.fis", "sets", {name: float(v) for name, v in load_joints("table_9")[0].set_values().items()}
+    )
     parameter_file.save(folder / "board.toml", ParameterTable.defaults())
     times = np.arange(0.0, 2.0, 0.02)
     save_leader(folder / "motion.csv", Trajectory(times, 0.1 * np.sin(3.0 * times)[:, None] * np.ones(4)))

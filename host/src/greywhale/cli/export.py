@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TypedDict
+from typing import NotRequired, TypedDict
 
 import click
 
 from greywhale.base.formats.whole import refuse_inputs, write_text
 from greywhale.cli import completion
+from greywhale.cli.export_controller import HeaderFacts, export_fis, export_headers, facts_of, has_joints, tell_headers
 from greywhale.cli.output import FILE, json_option, option, overwrite_option, show, warn
 from greywhale.files.exchange.formats import FORMATS, require_possible
 from greywhale.files.exchange.formats import write as write_logs
@@ -21,6 +22,7 @@ DRAWS = 2000  # plants of a model, of which the file says the intervals
 
 class ExportAnswer(TypedDict):
     written: list[str]  # files
+    headers: NotRequired[list[HeaderFacts]]  # with --header, one a file
 
 
 _LINES = [f"{name}, {one.does.rstrip('.')}" for name, one in FORMATS.items()]
@@ -36,11 +38,12 @@ _LINES = [f"{name}, {one.does.rstrip('.')}" for name, one in FORMATS.items()]
     shell_complete=completion.controllers,
     help="A controller for MATLAB.",
 )
+@option("--header", metavar="FILE", type=FILE, help="A law (.fis or controller.toml) as one C++ header.")
 @option("--urdf", metavar="ARM.toml", help="An arm for ROS, Pinocchio and others.")
 @option("--mjcf", metavar="ARM.toml", help="An arm for MuJoCo.")
 @option("--gears", is_flag=True, help="With --mjcf: a second hinge a joint, with the gear's gap and teeth.")
 @option("--out", "-o", required=True, type=FILE, help="The file to write.")
-@option("--joint", type=click.IntRange(0, 3), help="With --fis: this joint only, into OUT itself. --to bam needs it.")
+@option("--joint", type=click.IntRange(0, 3), help="Of a controller: this joint alone, into OUT. --to bam needs it.")
 @option("--mass", type=float, help="With --to bam: the pendulum's mass, kg.")
 @option("--length", type=float, help="With --to bam: its length, m.")
 @overwrite_option
@@ -49,6 +52,7 @@ def command(
     logs: tuple[Path, ...],
     to: str | None,
     fis: Path | None,
+    header: Path | None,
     urdf: str | None,
     mjcf: str | None,
     gears: bool,
@@ -59,25 +63,34 @@ def command(
     overwrite: bool,
     as_json: bool,
 ) -> None:
-    """Write a log in a format of other programs, a controller as MATLAB's .fis, or an arm as URDF or MuJoCo's MJCF.
+    """Write a log for other programs, a controller as .fis (MATLAB) or C++ header, or an arm as URDF or MuJoCo's MJCF.
 
     A .fis holds one fuzzy controller: without --joint there are four, named OUT_joint0.fis to OUT_joint3.fis. Its
     inputs are Kp e and Kd ce within [-1, 1], its sets those that the firmware stores. Controllers and arms
     are files, or names that come with greywhale: before_tuning, table_8, table_9, table_10; default, worn, two_joints,
     white_box, grey_box, sticky_grey_box.
+
+    A header holds one law in integers for any chip or PC, without heap or float: its tables, a PD+I, test vectors, and
+    how far it is from the exact centroid. It takes a controller as --fis does, or any .fis of two inputs and one
+    output, with triangles and trapezoids and up to 7 x 7 rules, that has no hole.
     """
-    if sum(source is not None for source in (to, fis, urdf, mjcf)) != 1 or (to is not None) != bool(logs):
-        raise click.UsageError("Give logs and --to, or exactly one of --fis, --urdf and --mjcf.")
+    if sum(source is not None for source in (to, fis, header, urdf, mjcf)) != 1 or (to is not None) != bool(logs):
+        raise click.UsageError("Give logs and --to, or exactly one of --fis, --header, --urdf and --mjcf.")
     if to is None and (mass is not None or length is not None):
         raise click.UsageError("--mass and --length go with --to bam.")
     if gears and mjcf is None:
         raise click.UsageError("--gears goes with --mjcf: the other formats have no word for them.")
+    if joint is not None and to is None and not has_joints(fis or header):
+        raise click.UsageError("--joint goes with a controller: anything else is written whole.")
+    if header is not None:
+        headers = export_headers(header, out, joint, overwrite)
+        facts: ExportAnswer = {"written": [str(path) for path in headers], "headers": facts_of(headers)}
+        show(as_json, facts, tell_headers(headers))
+        return
     if to is not None:
         written = _export_logs(logs, to, out, ExportOptions(joint, mass, length), overwrite)
     elif fis is not None:
-        written = _export_fis(fis, out, joint, overwrite)
-    elif joint is not None:
-        raise click.UsageError("--joint goes with --fis: an arm is written whole.")
+        written = export_fis(fis, out, joint, overwrite)
     else:
         written = [_export_arm(urdf, mjcf, gears, out, overwrite)]
     answer: ExportAnswer = {"written": [str(path) for path in written]}
@@ -91,23 +104,6 @@ def _export_logs(logs: tuple[Path, ...], to: str, out: Path, options: ExportOpti
     read = [read_log(path) for path in logs]
     warn(remark for log in read for remark in log.remarks)
     return write_logs(to, [Recording(log) for log in read], out, options)
-
-
-def _export_fis(source: Path, out: Path, joint: int | None, overwrite: bool) -> list[Path]:
-    from greywhale.fuzzy.export_fis import export_fis
-    from greywhale.fuzzy.settings import load_joints
-
-    joints = load_joints(source)
-    stem = out.with_suffix("") if out.suffix == ".fis" else out
-    names = [stem.with_name(f"{stem.name}_joint{number}.fis") for number in range(len(joints))]
-    files = dict(enumerate(names)) if joint is None else {joint: out}
-    for path in files.values():
-        refuse_inputs(path, source)
-        require_new(overwrite, path)
-    for number, path in files.items():
-        sets = {key: float(value) for key, value in joints[number].set_values().items()}
-        export_fis(path, f"{source.stem}, joint {number}", sets)
-    return list(files.values())
 
 
 def _export_arm(urdf: str | None, mjcf: str | None, gears: bool, out: Path, overwrite: bool) -> Path:

@@ -39,6 +39,7 @@ VERBS = {
     "arm": "Make an arm.toml: from a ruler, a scale and data sheets, or from a URDF.",
     "export": "Write logs, controllers and arms in formats of other programs.",
     "import": "Make a log of another program's recording.",
+    "fis": "Tell what a .fis holds, and take its sets into a controller.",
 }
 
 

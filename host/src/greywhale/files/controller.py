@@ -166,6 +166,7 @@ def save(
     notes: Sequence[str] = ("",) * JOINTS,
     travel: Mapping[str, int] | None = None,
     tuning: Mapping[str, Any] | None = None,
+    stall_volts: float | None = None,
 ) -> None:
     """Write a controller file, or nothing at all where a board would refuse it.
 
@@ -175,6 +176,7 @@ def save(
     joint.
     """
     lines = [*(f"# {line}".rstrip() for line in header), f"source = {toml_text.value(source)}"]
+    lines += [] if stall_volts is None else [f"stall_volts = {toml_text.value(stall_volts)}"]
     for joint, (row, note) in enumerate(zip(rows, notes, strict=True)):
         values = _in_file(joint, row)
         lines += ["", f"[[joint]]  # {joint}" + (f": {note}" if note else "")]

@@ -43,7 +43,7 @@ class Origin:
 
     @property
     def facts(self) -> dict[str, str]:
-        """The facts that are known, in the header's order, the parameters that ran behind them; a header quotes the task."""
+        """The known facts in the header's order, parameters that ran behind them; a header quotes the task."""
         facts = {
             "firmware": self.firmware,
             "board": self.board,
