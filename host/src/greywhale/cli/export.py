@@ -15,8 +15,9 @@ from greywhale.files.exchange.formats import FORMATS, require_possible
 from greywhale.files.exchange.formats import write as write_logs
 from greywhale.files.exchange.recording import ExportOptions, Recording
 from greywhale.files.log import read_log
-from greywhale.files.outputs import require_new
+from greywhale.files.outputs import require_new, require_new_folder
 
+MOST_FPS = 1000  # a frame a sample
 DRAWS = 2000  # plants of a model, of which the file says the intervals
 
 
@@ -42,10 +43,12 @@ _LINES = [f"{name}, {one.does.rstrip('.')}" for name, one in FORMATS.items()]
 @option("--urdf", metavar="ARM.toml", help="An arm for ROS, Pinocchio and others.")
 @option("--mjcf", metavar="ARM.toml", help="An arm for MuJoCo.")
 @option("--gears", is_flag=True, help="With --mjcf: a second hinge a joint, with the gear's gap and teeth.")
-@option("--out", "-o", required=True, type=FILE, help="The file to write.")
+@option("--out", "-o", required=True, type=FILE, help="The file to write, or with --to lerobot the folder.")
 @option("--joint", type=click.IntRange(0, 3), help="Of a controller: this joint alone, into OUT. --to bam needs it.")
 @option("--mass", type=float, help="With --to bam: the pendulum's mass, kg.")
 @option("--length", type=float, help="With --to bam: its length, m.")
+@option("--fps", type=click.IntRange(1, MOST_FPS), help="With --to lerobot: frames a second.  [default: 30]")
+@option("--task", metavar="TEXT", help="With --to lerobot: the task in words, for logs that name none or another.")
 @overwrite_option
 @json_option(ExportAnswer)
 def command(
@@ -60,6 +63,8 @@ def command(
     joint: int | None,
     mass: float | None,
     length: float | None,
+    fps: int | None,
+    task: str | None,
     overwrite: bool,
     as_json: bool,
 ) -> None:
@@ -76,8 +81,9 @@ def command(
     """
     if sum(source is not None for source in (to, fis, header, urdf, mjcf)) != 1 or (to is not None) != bool(logs):
         raise click.UsageError("Give logs and --to, or exactly one of --fis, --header, --urdf and --mjcf.")
-    if to is None and (mass is not None or length is not None):
-        raise click.UsageError("--mass and --length go with --to bam.")
+    options = ExportOptions(joint, mass, length, fps, task)
+    if to is None and options != ExportOptions(joint):
+        raise click.UsageError("--mass, --length, --fps and --task are for logs; give --to, or leave them out.")
     if gears and mjcf is None:
         raise click.UsageError("--gears goes with --mjcf: the other formats have no word for them.")
     if joint is not None and to is None and not has_joints(fis or header):
@@ -88,7 +94,7 @@ def command(
         show(as_json, facts, tell_headers(headers))
         return
     if to is not None:
-        written = _export_logs(logs, to, out, ExportOptions(joint, mass, length), overwrite)
+        written = _export_logs(logs, to, out, options, overwrite)
     elif fis is not None:
         written = export_fis(fis, out, joint, overwrite)
     else:
@@ -100,7 +106,10 @@ def command(
 def _export_logs(logs: tuple[Path, ...], to: str, out: Path, options: ExportOptions, overwrite: bool) -> list[Path]:
     require_possible(to, len(logs), options)
     refuse_inputs(out, *logs)
-    require_new(overwrite, out)
+    if FORMATS[to].folder:
+        require_new_folder(overwrite, out, *FORMATS[to].folder)
+    else:
+        require_new(overwrite, out)
     read = [read_log(path) for path in logs]
     warn(remark for log in read for remark in log.remarks)
     return write_logs(to, [Recording(log) for log in read], out, options)

@@ -24,6 +24,16 @@ def require_no_files(overwrite: bool, folder: Path | None, *patterns: str) -> No
             raise BadUsage(f"{path}: exists already; write over it with --overwrite, or name another folder.")
 
 
+def require_new_folder(overwrite: bool, folder: Path, *names: str) -> None:
+    """Refuse a folder that could not be made, and one that is there, unless `overwrite` and it holds `names` alone."""
+    require_folder(folder, "results")
+    held = {path.name for path in folder.iterdir()} if folder.exists() else set()
+    if held and not overwrite:
+        raise BadUsage(f"{folder}: exists already; write over it with --overwrite, or name another folder.")
+    if others := sorted(held - set(names)):
+        raise BadUsage(f"{folder}: it also holds {others[0]}, which --overwrite would take; name another folder.")
+
+
 def require_files(*paths: Path | None) -> None:
     """Refuse files that could not be written; None is one that nobody asked for. Nothing is left behind."""
     for path in paths:

@@ -13,6 +13,8 @@ from greywhale.protocol.firmware import JOINTS
 
 Joints = tuple[int, ...]
 ALL: Joints = tuple(range(JOINTS))
+# Their names in the data of others, where a number says nothing: `yaw.pos`.
+NAMES = ("yaw", "shoulder", "wrist_pitch", "wrist_roll")
 
 
 def parse(text: str, where: str = "--joints") -> Joints:

@@ -66,7 +66,7 @@ class Draft:
             try:
                 self._link(self.target)
             except FileExistsError:  # only a file with a name can replace another
-                self._link(_hidden_name(self.target.parent))
+                self._link(hidden_name(self.target.parent))
         if self.path != self.target:
             assert self.path is not None
             if not system.RENAMES_OPEN_FILES:
@@ -97,7 +97,7 @@ class Draft:
                 _lock(descriptor)
                 return descriptor
         while True:
-            self.path = _hidden_name(self.target.parent)
+            self.path = hidden_name(self.target.parent)
             descriptor = system.open_plain(self.path, os.O_CREAT | os.O_EXCL | os.O_RDWR)
             _lock(descriptor)
             if os.fstat(descriptor).st_nlink:
@@ -158,7 +158,8 @@ def _refuse_others(target: Path) -> None:
         raise OSError(errno.EINVAL, "not an ordinary file", str(target))
 
 
-def _hidden_name(folder: Path) -> Path:
+def hidden_name(folder: Path) -> Path:
+    """A name in a folder that nothing has, for what gets its own when it is whole."""
     return folder / f".greywhale-{secrets.token_hex(8)}.new"
 
 

@@ -7,13 +7,15 @@ from __future__ import annotations
 
 import errno
 import os
+import shutil
 import stat
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import IO
 
 from greywhale.base.errors import BadUsage, UserError, os_reason
-from greywhale.base.formats.draft import Draft
+from greywhale.base.formats.draft import Draft, hidden_name, sync, sync_folder
 
 
 def refuse_devices(path: str | Path) -> None:
@@ -52,6 +54,32 @@ def write_whole(path: str | Path, write: Callable[[IO[bytes]], object]) -> None:
 
 def write_text(path: str | Path, text: str) -> None:
     write_whole(path, lambda file: file.write(text.encode("utf-8")))
+
+
+@contextmanager
+def whole_folder(folder: Path) -> Iterator[Path]:
+    """A folder to fill, which gets the name `folder`, or replaces it, when the context ends well, and else is gone."""
+    draft, old = hidden_name(folder.parent), hidden_name(folder.parent)
+    try:
+        draft.mkdir()
+        yield draft
+        for path in draft.rglob("*"):
+            if path.is_dir():
+                sync_folder(path)
+            else:
+                with path.open("rb") as file:
+                    sync(file)
+        if folder.exists():
+            folder.rename(old)
+        draft.rename(folder)
+        sync_folder(folder.parent)
+    except OSError as error:
+        raise UserError(f"{folder}: cannot be written: {os_reason(error)}.") from None
+    finally:
+        shutil.rmtree(draft, ignore_errors=True)
+        if old.exists() and not folder.exists():
+            old.rename(folder)
+        shutil.rmtree(old, ignore_errors=True)
 
 
 def make_folder(folder: Path) -> None:

@@ -29,12 +29,22 @@ class Format:
     packages: tuple[str, ...] = ()  # the modules that this extra brings
     options: tuple[str, ...] = ()  # fields of ExportOptions that it takes
     many: bool = False  # whether it takes more than one log
+    folder: tuple[str, ...] = ()  # what it writes is a folder, which holds these
 
 
 FORMATS = {
     "bam": Format("one joint for Rhoban's BAM.", "bam:write", options=("joint", "mass", "length")),
     "mcap": Format("for PlotJuggler and Foxglove.", "mcap:write", "mcap", ("mcap.writer", "google.protobuf")),
     "mat": Format("for MATLAB and Octave.", "mat:write"),
+    "lerobot": Format(
+        "a LeRobot dataset v3.0 (a folder), one log an episode.",
+        "lerobot:write",
+        extra="lerobot",
+        packages=("pyarrow.parquet",),
+        options=("fps", "task"),
+        many=True,
+        folder=("data", "meta"),
+    ),
     "npz": Format("numpy's arrays.", "npz:write"),
     "parquet": Format("a table for pandas, DuckDB and others.", "parquet:write", "parquet", ("pyarrow",)),
 }

@@ -80,3 +80,5 @@ class ExportOptions:
     joint: int | None = None
     mass: float | None = None  # kg
     length: float | None = None  # m
+    fps: int | None = None  # frames a second
+    task: str | None = None  # in words
