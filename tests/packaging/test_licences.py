@@ -23,6 +23,8 @@ def test_no_file_is_without_a_licence_and_only_the_bootloaders_of_others_have_an
     assert all(files[name] == {"Apache-2.0"} for name in files.keys() - bootloaders)
 
 
-@pytest.mark.parametrize("place", ["LICENSES/Apache-2.0.txt", "studies/paper/LICENSE"])
+@pytest.mark.parametrize(
+    "place", ["LICENSES/Apache-2.0.txt", "studies/paper/LICENSE", "studies/lerobot_robot_greywhale/LICENSE"]
+)
 def test_the_text_is_the_same_where_pip_and_where_reuse_look(place: str) -> None:
     assert (ROOT / "LICENSE").read_bytes() == (ROOT / place).read_bytes()

@@ -1,10 +1,11 @@
-"""One version: both packages, bench, firmware, citation and change log agree."""
+"""One version: all packages, bench, firmware, citation and change log agree."""
 
 from __future__ import annotations
 
 import re
 import tomllib
 from importlib import metadata
+from typing import Any
 
 import pytest
 from click.testing import CliRunner
@@ -14,7 +15,10 @@ from greywhale.cli.verbs import greywhale as command_line
 from tools import ROOT
 
 VERSION = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["version"]
-PAPER = tomllib.loads((ROOT / "studies/paper/pyproject.toml").read_text(encoding="utf-8"))["project"]
+BESIDE = [
+    tomllib.loads((ROOT / "studies" / name / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    for name in ("paper", "lerobot_robot_greywhale")
+]
 
 
 @pytest.mark.parametrize(
@@ -33,10 +37,11 @@ def test_each_place_has_the_version_of_the_package(file: str, pattern: str) -> N
     assert ".".join(found.groups()) == VERSION
 
 
-def test_the_paper_has_it_and_asks_for_it() -> None:
-    """It stands on greywhale's rooms as they are in this very version."""
-    assert PAPER["version"] == VERSION
-    assert f"greywhale=={VERSION}" in PAPER["dependencies"]
+@pytest.mark.parametrize("package", BESIDE, ids=lambda package: str(package["name"]))
+def test_the_packages_beside_it_have_it_and_ask_for_it(package: dict[str, Any]) -> None:
+    """They stand on greywhale's rooms as they are in this very version."""
+    assert package["version"] == VERSION
+    assert f"greywhale=={VERSION}" in package["dependencies"]
 
 
 def test_what_is_installed_has_it_too() -> None:

@@ -9,6 +9,7 @@ ticks at once, and so many points would flood the board.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 
@@ -18,7 +19,6 @@ from greywhale.board.device import Device
 from greywhale.board.refusal import RefusedError
 from greywhale.board.stream import why_stopped
 from greywhale.files.trajectory import Trajectory
-from greywhale.loop.leader_motions import minimum_jerk
 from greywhale.protocol import schema
 from greywhale.protocol.firmware import (
     ANGLE_LSB,
@@ -48,6 +48,20 @@ _PACE_STEP = 0.1
 _LONGEST_RATIO = 3.0
 
 
+def leadable(limits: Floats) -> Floats:
+    """The least and the greatest angles (2, 4) to which points may lead within the joints' `limits`, rad."""
+    rounding = np.where(limits[1] > limits[0], STEP_LSB, 0.0)  # points are rounded to steps
+    return np.array([limits[0] + rounding, limits[1] - rounding])
+
+
+class Reference(Protocol):
+    """Angles in rad at any place up to the `end`, both counted in points; each place is asked for once, in order."""
+
+    @property
+    def end(self) -> float: ...
+    def at(self, place: float) -> Floats: ...
+
+
 @dataclass(frozen=True)
 class Plan:
     """A motion in the form that the board gets: `angles` (rad, rows 16 ms apart), from one pose at rest to another."""
@@ -61,8 +75,9 @@ class Plan:
         All is within the joints' `limits` (2, 4), which the board also sets for a leader arm. Joints that are not in
         use have no room between theirs.
         """
-        rounding = np.where(limits[1] > limits[0], STEP_LSB, 0.0)  # points are rounded to steps
-        low, high = limits[0] + rounding, limits[1] - rounding
+        from greywhale.loop.leader_motions import minimum_jerk  # beside the simulated loop, which no board needs
+
+        low, high = leadable(limits)
         first = np.clip(motion.angles[0], low, high)
         way = float(np.abs(first - start).max())
         # A minimum-jerk path is 1.875 times as fast in its middle as on average.
@@ -86,7 +101,11 @@ class Plan:
 
     @property
     def duration_s(self) -> float:
-        return (len(self.angles) - 1) * POINT_S
+        return self.end * POINT_S
+
+    @property
+    def end(self) -> float:
+        return float(len(self.angles) - 1)
 
     def at(self, place: float) -> Floats:
         """The angles at any place, counted in rows."""
@@ -97,11 +116,21 @@ class Plan:
 
 
 class Leading:
-    """Feeds a plan to a board that this host leads; call `keep_ahead` with every sample."""
+    """Feeds a reference to a board that this host leads; call `keep_ahead` with every sample."""
 
-    def __init__(self, device: Device, begun: schema.LeadReply, plan: Plan, tracking_limit: float) -> None:
-        """`tracking_limit` in rad, 0 for none."""
+    def __init__(
+        self,
+        device: Device,
+        begun: schema.LeadReply,
+        plan: Reference,
+        tracking_limit: float,
+        ahead: int = BOARD_ROOM_POINTS,
+    ) -> None:
+        """`tracking_limit` in rad, 0 for none. The board is kept `ahead` points ahead: fewer let it hear sooner what
+        has just been decided, and more wait longer for a host that is late.
+        """
         self._device = device
+        self._ahead = ahead
         self._plan = plan
         self._limit = tracking_limit or float("inf")
         self._first = begun.next
@@ -121,7 +150,7 @@ class Leading:
 
     @property
     def fraction(self) -> float:
-        return min(1.0, self._place / (len(self._plan.angles) - 1))
+        return min(1.0, self._place / self._plan.end)
 
     @property
     def points(self) -> int:
@@ -145,9 +174,7 @@ class Leading:
         if self._taken < self._sent and self._waited(tick, _PATIENCE_TICKS):
             self._sent = self._taken
             self._note_progress(tick)
-        room = min(
-            _MOST_AT_ONCE_POINTS, BOARD_ROOM_POINTS - max(0, self._points_left(tick)) - (self._sent - self._taken)
-        )
+        room = min(_MOST_AT_ONCE_POINTS, self._ahead - max(0, self._points_left(tick)) - (self._sent - self._taken))
         while room > 0 and self._make_points(self._sent + 1):
             if self._sent == self._taken:
                 self._note_progress(tick)
@@ -200,14 +227,14 @@ class Leading:
 
     def _make_points(self, count: int) -> bool:
         """Make points until there are `count`; False when the plan ends before."""
-        end = len(self._plan.angles) - 1
+        end = self._plan.end
         while len(self._points) < count and not self._made_all:
             if self._resting:
                 self._points.append((0, 0, 0, 0))
                 continue
             self._pace += min(max(self._wanted - self._pace, -_PACE_STEP), _PACE_STEP)
             self.slowest = min(self.slowest, self._pace)
-            self._place = min(self._place + self._pace, float(end))
+            self._place = min(self._place + self._pace, end)
             if len(self._points) > _LONGEST_RATIO * end + 1000:
                 raise UserError(
                     f"{self._device.port}: the arm cannot follow this motion: it would take more than "
