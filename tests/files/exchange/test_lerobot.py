@@ -32,12 +32,13 @@ def make_log(
     joints: Joints = ALL,
     every: int = 1,
     state: Callable[[int], str | None] = lambda row: "following",
+    task: str | None = None,
 ) -> Recording:
     """A log whose angles say its tick: 1 mrad a tick for the follower, 2 for the leader, 1 mV more a joint; a state of
     None is a sample that the link lost.
     """
     used = np.isin(range(4), joints)
-    with LogWriter(path, Origin("0.1.0", "mega2560", 1, 1, every, joints=joints)) as log:
+    with LogWriter(path, Origin("0.1.0", "mega2560", 1, 1, every, joints=joints, task=task)) as log:
         for row in range(rows):
             if (word := state(row)) is None:
                 log.drop(1)
@@ -127,6 +128,23 @@ def test_episodes_fill_files_by_size_and_are_found_by_their_table(tmp_path: Path
 
 
 @pytest.mark.parametrize(
+    ("asked", "tasks", "indices"),
+    [(None, ["Wave", 'Say "hé"'], {0: 0, 1: 1, 2: 0}), ("Rest", ["Rest"], {0: 0, 1: 0, 2: 0})],
+)
+def test_the_task_is_the_logs_own_unless_another_is_asked_for(
+    tmp_path: Path, asked: str | None, tasks: list[str], indices: dict[int, int]
+) -> None:
+    own = ["Wave", 'Say "hé"', "Wave"]
+    recordings = [make_log(tmp_path / f"{number}.csv", 200, task=task) for number, task in enumerate(own)]
+    write(recordings, tmp_path / "set", ExportOptions(task=asked))
+    table = pq.read_table(tmp_path / "set/meta/tasks.parquet").to_pydict()
+    assert table == {"task_index": list(range(len(tasks))), "task": tasks}
+    _, columns = read(tmp_path / "set")
+    pairs = zip(columns["episode_index"].tolist(), columns["task_index"].tolist(), strict=True)
+    assert dict(pairs) == indices
+
+
+@pytest.mark.parametrize(
     ("second", "options", "sentence"),
     [
         ({}, ExportOptions(), "names no task"),
@@ -135,7 +153,11 @@ def test_episodes_fill_files_by_size_and_are_found_by_their_table(tmp_path: Path
         ({"rows": 40}, WAVE, "0.04 s long, too short for 2 frames"),
         ({"joints": (0, 1)}, WAVE, "joints 0 and 1"),
         ({"every": 4}, WAVE, "a sample every 4 ms, but"),
-        ({"every": 40, "rows": 90}, WAVE, "25 samples a second, fewer than the 30 frames asked for; give --fps 25 or less"),
+        (
+            {"every": 40, "rows": 90},
+            WAVE,
+            "25 samples a second, fewer than the 30 frames asked for; give --fps 25 or less",
+        ),
     ],
 )
 def test_a_dataset_is_whole_or_not_there(
