@@ -42,6 +42,7 @@ def test_what_params_changed_is_listed_and_taken_back_and_the_controllers_stay(
         ask(capsys, board, "params", "restore", str(tmp_path / "backup.toml"))
         ask(capsys, board, "params", "set", "joint2.kp=0.25")
         listed = ask(capsys, board, "calibrations")
+        assert listed == ask(capsys, board, "calibrate", "--history")
         assert listed["folder"] == str(folder)
         assert [one["why"] for one in listed["calibrations"]] == ["found", "set", "restore"]
         assert listed["calibrations"][1]["changed"] == [

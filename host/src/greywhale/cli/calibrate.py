@@ -20,6 +20,7 @@ from greywhale.board.calibrate.solve import Calibration
 from greywhale.board.device import Device
 from greywhale.board.pots import FULL_SCALE, POTS
 from greywhale.board.upload import upload_set
+from greywhale.cli import calibrations
 from greywhale.cli.output import FILE, OnPort, json_option, option, overwrite_option, port_option, show
 from greywhale.cli.person import Terminal
 from greywhale.files import parameter_file
@@ -64,6 +65,7 @@ class CalibrateAnswer(OnPort):
 @option("--backup", type=FILE, default="before-calibration.toml", help="Where the parameters from before are kept.")
 @option("--no-motors", is_flag=True, help="Leave the motors alone; motor_sign stays as it is.")
 @option("--yes", "-y", is_flag=True, help="Store the result without asking.")
+@option("--history", is_flag=True, help="List earlier calibrations instead, as greywhale calibrations does.")
 @overwrite_option
 @json_option(CalibrateAnswer)
 def command(
@@ -75,6 +77,7 @@ def command(
     backup: Path,
     no_motors: bool,
     yes: bool,
+    history: bool,
     overwrite: bool,
     as_json: bool,
 ) -> None:
@@ -87,6 +90,9 @@ def command(
     An arm with fewer joints needs neither potentiometers nor motors for the others: --joints 0,1 asks for those two
     alone, and tells the board that the others are not in use.
     """
+    if history:
+        click.get_current_context().invoke(calibrations.command, back=None, port=port, as_json=as_json)
+        return
     if not TRACK_DEG[0] <= track <= TRACK_DEG[1]:
         raise BadUsage(f"--track is {track:g} degrees; it must be {TRACK_DEG[0]:g} to {TRACK_DEG[1]:g}.")
     joints = parse(in_use)
