@@ -83,7 +83,7 @@ def test_a_board_that_is_no_greywhale_is_told_and_asked_again_later(relay: Relay
     with FakeBoard(Faults(silent=True)) as board:
         assert PortHolder(relay, board.port).hold() == ASK_AGAIN_S
     assert "the board has probably no greywhale firmware: flash it" in relay.link["sentence"]
-    assert not relay.link["open"]
+    assert (relay.link["open"], relay.link["unflashed"]) == (False, True)
 
 
 def test_a_board_that_falls_silent_is_given_up(relay: Relay) -> None:
@@ -91,6 +91,7 @@ def test_a_board_that_falls_silent_is_given_up(relay: Relay) -> None:
         assert PortHolder(relay, board.port).hold() == ASK_AGAIN_S
         assert board.asked(schema.TelemetryRequest) == 3, "once more before it is given up, and off"
     assert "the board fell silent" in relay.link["sentence"]
+    assert not relay.link["unflashed"], "it had answered"
 
 
 @pytest.mark.slow
@@ -136,4 +137,5 @@ def test_a_board_that_no_firmware_answers_on_can_be_flashed_too(relay: Relay) ->
         holder.start()
         with holder.away("`greywhale flash` has the port.") as port:
             assert relay.link["sentence"] == "`greywhale flash` has the port."
+            assert relay.link["unflashed"]
             assert open_line(port).read() == b""

@@ -311,5 +311,6 @@ def test_without_a_board_a_page_is_told_what_to_do(shared: Shared) -> None:
     page.ask(schema.HelloRequest())
     assert page.words("link")[-1] == {
         "kind": "link", "open": False, "port": "", "sentence": "No board was found; plug it in.",
+        "unflashed": False,
     }  # fmt: skip
     assert page.words("refused")[-1]["sentence"] == "No board was found; plug it in."

@@ -43,8 +43,16 @@ logger = logging.getLogger(__name__)
 _UNASKED_SEQ = 0
 
 
+class FirmwareError(UserError):
+    """No firmware that speaks this host's words answers at the port: flashing it is the remedy."""
+
+
 class NoAnswerError(UserError):
     """The board stayed silent through all repeats of a request."""
+
+
+class NoGreetingError(NoAnswerError, FirmwareError):
+    """The board said nothing from the opening of its port on."""
 
 
 class RestartedError(UserError):
@@ -379,7 +387,7 @@ class Device:
         remedy = f"flash the firmware that belongs to this host with `greywhale flash --port {self.port}`."
         if not payload or payload[0] != schema.PROTOCOL:
             spoken = payload[0] if payload else "none"
-            raise UserError(
+            raise FirmwareError(
                 f"{self.port}: the board speaks protocol version {spoken}, this host version {schema.PROTOCOL}; "
                 f"{remedy}"
             )
@@ -388,7 +396,7 @@ class Device:
         except UserError as error:
             raise UserError(f"{self.port}: {error.message}") from None
         if hello.schema_hash != schema.SCHEMA_HASH:
-            raise UserError(
+            raise FirmwareError(
                 f"{self.port}: firmware {version(hello)} was built with schema {hello.schema_hash:#010x}, "
                 f"this host with {schema.SCHEMA_HASH:#010x}; {remedy}"
             )
@@ -398,11 +406,11 @@ class Device:
         if disturbed := disturbance(self._transport):
             return disturbed
         if self._heard_bytes:
-            return UserError(
+            return FirmwareError(
                 f"{self.port}: something sends data, but no greywhale firmware answers within {patience_s:g} s; "
                 f"flash the board with `greywhale flash --port {self.port}`, or name another port."
             )
-        return NoAnswerError(
+        return NoGreetingError(
             f"{self.port}: nothing answers within {patience_s:g} s; the board has probably no greywhale firmware: "
             f"flash it with `greywhale flash --port {self.port}`, or name another port."
         )

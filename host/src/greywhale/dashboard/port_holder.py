@@ -8,7 +8,7 @@ import threading
 from collections.abc import Callable, Iterator
 
 from greywhale.base.errors import UserError
-from greywhale.board.device import Device
+from greywhale.board.device import Device, FirmwareError
 from greywhale.board.refusal import upper_first
 from greywhale.board.session import Session, StopAsked
 from greywhale.dashboard.relay import Relay
@@ -79,7 +79,7 @@ class PortHolder:
             with self._changed:
                 self._changed.wait_for(lambda: bool(self._away) or self._ending.is_set(), pause_s)
                 if self._away:
-                    self._relay.close(self._relay.link["port"], self._away)
+                    self._relay.close(self._relay.link["port"], self._away, unflashed=True)
                     self._free = True
                     self._changed.notify_all()
                     self._changed.wait_for(lambda: not self._away or self._ending.is_set())
@@ -121,11 +121,11 @@ class PortHolder:
         except UserError as error:
             self._tell(port, error)
             raise
-        self._relay.close(port, self._away)
+        self._relay.close(port, self._away, unflashed=bool(self._away))
 
     def _tell(self, port: str, error: UserError) -> None:
         logger.info("%s", error.message)
-        self._relay.close(port, upper_first(error.message))
+        self._relay.close(port, upper_first(error.message), isinstance(error, FirmwareError))
 
 
 def turn(relay: Relay, line: Line, session: Session) -> None:

@@ -54,7 +54,7 @@ class Relay:
         self._lock = threading.RLock()
         self.members = Members()
         self._board: _Open | None = None
-        self._link: Message = {"kind": "link", "open": False, "port": "", "sentence": ""}
+        self._link: Message = {"kind": "link", "open": False, "port": "", "sentence": "", "unflashed": False}
         self._stored = StoredSet()
         self._decoder = FrameDecoder()
         self._requests = Requests()
@@ -81,8 +81,8 @@ class Relay:
             self._tell_link(True, port, "")
             self._tell_stored()
 
-    def close(self, port: str, sentence: str) -> None:
-        """No board is there, and why."""
+    def close(self, port: str, sentence: str, unflashed: bool = False) -> None:
+        """No board is there, and why; `unflashed`: something is, without this host's firmware, or just getting it."""
         with self._lock:
             if self._board is not None:
                 self._ask_for_samples(0)  # whoever opens the port next asks for samples by himself
@@ -91,7 +91,7 @@ class Relay:
             if self.members.verb is not None:
                 self.members.verb.outbox.add_answer({"kind": "gone"})
             if self._link["sentence"] != sentence or self._link["open"]:
-                self._tell_link(False, port, sentence)
+                self._tell_link(False, port, sentence, unflashed)
 
     def heard(self, data: bytes) -> None:
         with self._lock:
@@ -351,8 +351,8 @@ class Relay:
         cause = schema.HelloReply.unpack(frame.payload).reset_cause.description
         self._tell_link(True, self._board.port, f"The board restarted ({cause}), and its motors are off.")
 
-    def _tell_link(self, open: bool, port: str, sentence: str) -> None:
-        self._link = {"kind": "link", "open": open, "port": port, "sentence": sentence}
+    def _tell_link(self, open: bool, port: str, sentence: str, unflashed: bool = False) -> None:
+        self._link = {"kind": "link", "open": open, "port": port, "sentence": sentence, "unflashed": unflashed}
         self.members.tell(self._link)
 
     def _stored_word(self) -> Message:

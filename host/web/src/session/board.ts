@@ -1,6 +1,12 @@
 // The board of every view: send a frame; frames arrive. No view knows where they come from.
 
-export type LinkState = { readonly open: boolean; readonly port: string; readonly sentence: string };
+export type LinkState = {
+  readonly open: boolean;
+  readonly port: string;
+  readonly sentence: string;
+  /** True if something is at the port that does not answer as this firmware does, or just gets it. */
+  readonly unflashed?: boolean;
+};
 
 /** The client that may change what the board does; `verb` is what uses the board now at the host, in the place of any page. */
 export type DriverState = { readonly you: boolean; readonly free: boolean; readonly verb: string | null };

@@ -6,7 +6,7 @@ const HERE_EVERY_MS = 100; // the server's patience is 500 ms
 const AGAIN_MS = 500; // until a server that went is tried again
 
 type Told =
-  | { kind: "link"; open: boolean; port: string; sentence: string }
+  | { kind: "link"; open: boolean; port: string; sentence: string; unflashed: boolean }
   | { kind: "driver"; you: boolean; free: boolean; verb: string | null }
   | { kind: "stored"; crc: number | null }
   | { kind: "refused"; sentence: string; seq?: number; type?: number }
@@ -74,7 +74,7 @@ export class ServerBoard implements Board {
         this.page = message.id;
         break;
       case "link":
-        this.listener?.link({ open: message.open, port: message.port, sentence: message.sentence });
+        this.listener?.link({ open: message.open, port: message.port, sentence: message.sentence, unflashed: message.unflashed });
         break;
       case "driver":
         this.driving = message.you;

@@ -54,10 +54,9 @@ export class Facts {
     this.running = [...this.numbers].find(([, raw]) => Object.entries(raw).every(runs))?.[0] ?? null;
   }
 
-  /** True if something is at the port that does not answer, as a board without this firmware: the source's sentence says so. */
+  /** True if something is at the port that does not answer, as a board without this firmware. */
   get isUnflashed(): boolean {
-    const { open, sentence } = this.session.link;
-    return !open && sentence.includes("`greywhale flash");
+    return this.session.link.unflashed ?? false;
   }
 
   /** True if the board speaks this page's words; null while none has said hello. */
