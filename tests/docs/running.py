@@ -117,8 +117,10 @@ def _commands(group: click.Group, arguments: list[str]) -> list[click.Command]:
 
 def _is_parsed_only(command: Command) -> bool:
     everything = [*command.variables.values(), *command.words, *command.rest]
-    needs_a_person = command.words[1:2] == ["calibrate"] or (
-        command.words[1:3] == ["arm", "new"] and "--answers" not in command.words
+    needs_a_person = (
+        command.words[1:2] == ["calibrate"]
+        or "--episodes" in command.words
+        or (command.words[1:3] == ["arm", "new"] and "--answers" not in command.words)
     )
     return (
         needs_a_person

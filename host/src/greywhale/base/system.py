@@ -18,7 +18,7 @@ import stat
 import struct
 import sys
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TextIO
 
@@ -30,6 +30,7 @@ else:
     import fcntl
     import grp
     import termios
+    import tty
 
 NOT_ON_WINDOWS = ("fcntl", "termios", "tty")  # modules of Python, which the simulated bench needs
 
@@ -198,6 +199,34 @@ def forget_typed(terminal: TextIO) -> None:
             msvcrt.getwch()
     else:
         termios.tcflush(terminal, termios.TCIFLUSH)
+
+
+@contextlib.contextmanager
+def pressed_keys(terminal: TextIO) -> Iterator[Callable[[], str]]:
+    """Keys of a terminal, unseen and without Enter: a function that returns what was pressed since its last call.
+
+    Where no more can come it is Ctrl-D. What is typed for another program is left.
+    """
+    forget_typed(terminal)
+    if sys.platform == "win32":
+        yield lambda: "".join(iter(lambda: msvcrt.getwch() if msvcrt.kbhit() else "", ""))
+        return
+
+    def read() -> str:
+        if not has_typed(terminal, wait=False) or not in_foreground():
+            return ""
+        try:
+            return os.read(terminal.fileno(), 64).decode("utf-8", "replace") or "\x04"
+        except OSError:  # it was closed
+            return "\x04"
+
+    before = termios.tcgetattr(terminal)
+    tty.setcbreak(terminal, termios.TCSADRAIN)
+    try:
+        yield read
+    finally:
+        with contextlib.suppress(termios.error):
+            termios.tcsetattr(terminal, termios.TCSADRAIN, before)
 
 
 def readable(descriptors: list[int], pause_s: float | None) -> set[int]:

@@ -7,6 +7,7 @@ it early, the motors are stopped, and what was recorded is kept and marked as in
 
 from __future__ import annotations
 
+import contextlib
 import itertools
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -40,7 +41,7 @@ _LONGEST_EVERY_TICKS = 65535  # 16 bits of the request
 # With rarer samples a host that leads could not send its points in time.
 _LONGEST_EVERY_LED_TICKS = 4
 _SHORTEST_S = 0.01  # of a recording
-_LONGEST_S = 86400.0  # a day
+LONGEST_S = 86400.0  # a day
 # After a motion the log goes on for this long.
 REST_S = 0.3
 # Within this many ticks of enable the samples must show that the motors started.
@@ -116,17 +117,26 @@ def record(
     origin = origin_of(device, read_parameters(device), every)
     length = round(seconds * 1000)
     with LogWriter(path, origin) as log:
-        received = stream(device, every)
-        if enable:
-            if disengaged:
-                device.clutch(schema.ClutchAction.DISENGAGE)
-            with device.enabled(max(LEASE_MS, 20 * every)):
-                received = _await_following(device, received, progress)
-                duration = write_samples(device, log, received, length, True, progress)
-        else:
-            duration = write_samples(device, log, received, length, False, progress)
+        lease_ms = LEASE_MS if enable else 0
+        with samples_of(device, every, lease_ms, disengaged, progress) as received:
+            duration = write_samples(device, log, received, length, enable, progress)
     device.telemetry(0)
     return Recording(Path(path), log.rows, log.dropped, duration)
+
+
+@contextlib.contextmanager
+def samples_of(
+    device: Device, every: int, lease_ms: int, disengaged: bool, progress: Progress
+) -> Iterator[Iterator[Received]]:
+    """The samples; with a lease those from the end of the soft start on, and the motors are off afterwards."""
+    received = stream(device, every)
+    if not lease_ms:
+        yield received
+        return
+    if disengaged:
+        device.clutch(schema.ClutchAction.DISENGAGE)
+    with device.enabled(max(lease_ms, 20 * every)):
+        yield _await_following(device, received, progress)
 
 
 def record_led(
@@ -185,8 +195,8 @@ def pose_of(device: Device) -> Floats:
 
 def check_request(seconds: float, every: int, enable: bool) -> None:
     """Refuse a length, or samples so rare, that no board can record."""
-    if not _SHORTEST_S <= seconds <= _LONGEST_S:
-        raise BadUsage(f"the duration is {seconds:g} s; it must be {_SHORTEST_S:g} to {_LONGEST_S:g} s.")
+    if not _SHORTEST_S <= seconds <= LONGEST_S:
+        raise BadUsage(f"the duration is {seconds:g} s; it must be {_SHORTEST_S:g} to {LONGEST_S:g} s.")
     longest = _LONGEST_EVERY_ENABLED_TICKS if enable else _LONGEST_EVERY_TICKS
     if not 1 <= every <= longest:
         motors = " while the motors are on" if enable else ""
@@ -236,13 +246,20 @@ def write_samples(
     enabled: bool,
     report: Progress,
     begin: int = 0,
+    ended: Callable[[], bool] = lambda: False,
 ) -> float:
-    """Fill the log up to `length` ticks, with the first sample at the tick `begin`, and return its duration in s."""
+    """Fill the log up to `length` ticks, with the first sample at the tick `begin`, and return its duration in s.
+
+    `ended` is asked at each sample, and may end it sooner.
+    """
     start: int | None = None
     for one in received:
         if enabled and one.sample.state is not schema.State.FOLLOWING:
             raise why_stopped(device)
         ticks = begin if start is None else begin + one.elapsed - start
+        if ended() and start is not None and ticks < length:
+            log.drop(one.lost)
+            return ticks / 1000
         if ticks >= length:
             _end(device, log, one, length)
             return length / 1000

@@ -24,7 +24,7 @@ TAKES_PORT = {"flash"}
 _SERVERS = {"as_json", "port"}
 _NOT_HERE = {
     "doctor": {"image", "hex_file"},
-    "record": {"reconnect", "yes"},
+    "record": {"reconnect", "yes", "episodes", "task"},
     "replay": {"yes"},
     "commission": {"yes"},
     "info": {"watch", "seconds"},

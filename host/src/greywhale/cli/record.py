@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, NotRequired, TypedDict
@@ -12,10 +12,11 @@ from typing import TYPE_CHECKING, NotRequired, TypedDict
 import click
 
 from greywhale.base.errors import MOST_SEED, BadUsage, counted
-from greywhale.base.formats.whole import refuse_inputs
+from greywhale.base.formats.whole import make_folder, refuse_inputs
 from greywhale.base.telling import Motions, Sentences, Step, Telling
 from greywhale.base.types import Floats, NotedProgress
 from greywhale.board.device import Device
+from greywhale.board.episodes import EpisodePlan, Episodes, Person, record_episodes
 from greywhale.board.pots import FOLLOWERS, require_good_pots
 from greywhale.board.reconnect import record_through_losses
 from greywhale.board.record import (
@@ -32,9 +33,10 @@ from greywhale.board.stream import LeaseLostError
 from greywhale.board.upload import read_parameters
 from greywhale.cli import completion
 from greywhale.cli.countdown import prepare_motion, warn_page, yes_option
+from greywhale.cli.keys import person_at_hand
 from greywhale.cli.output import FILE, OnPort, json_option, option, overwrite_option, port_option, progress, show
 from greywhale.files.leader import save_leader
-from greywhale.files.outputs import require_new
+from greywhale.files.outputs import require_folder, require_new
 from greywhale.files.trajectory import Trajectory
 from greywhale.loop.leader_motions import poses as visits_of_poses
 from greywhale.protocol.holder import meddler
@@ -44,15 +46,24 @@ from greywhale.protocol.table import ParameterTable
 if TYPE_CHECKING:
     from greywhale.identify.excite import Design
 
+USUAL_LOG = "log.csv"
 USUAL_RECORDING_S = 10.0  # without --seconds
 # Options that mean nothing without a motion that this host leads, and those that belong to --excite alone.
 _OF_LED = {"arm_file": "--arm", "ranges": "--range", "save_motion": "--save-motion"}
+_OF_EPISODES = {"task": "--task"}
 _OF_EXCITE = {"seed": "--seed", "budget": "--budget"}
+MOST_EPISODES = 1000  # of a call
 MOST_VISITS = 100  # more would take longer than an hour
 
 
 class RecordAnswer(OnPort, RecordingFacts):
     pass
+
+
+class RecordEpisodesAnswer(OnPort):
+    task: str  # as the header of each log has it
+    episodes: list[RecordingFacts]  # that were kept
+    discarded: int  # episodes whose files are gone
 
 
 class DesignFacts(TypedDict):
@@ -77,7 +88,7 @@ class RecordExciteAnswer(OnPort, LedRecordingFacts, Saved):
 
 
 @click.command("record")
-@option("--out", "-o", type=FILE, default="log.csv", help="The log.")
+@option("--out", "-o", type=FILE, default=USUAL_LOG, help="The log; with --episodes the folder.  [there: episodes]")
 @option("--seconds", "-s", type=float, help="Length, by the board's clock.  [default: 10; with --excite: 20]")
 @option("--every", type=int, default=1, help="One sample every so many ticks of 1 ms.")
 @option("--enable", is_flag=True, help="Turn the motors on: the follower follows while the log is recorded.")
@@ -89,6 +100,13 @@ class RecordExciteAnswer(OnPort, LedRecordingFacts, Saved):
     is_flag=True,
     help="Motors off: if the port goes away, wait for it until the end of --seconds, and go on after the gap.",
 )
+@option(
+    "--episodes",
+    metavar="N",
+    type=click.IntRange(1, MOST_EPISODES),
+    help="Record N logs into the folder --out, begun and ended by keys; without a terminal each takes --seconds.",
+)
+@option("--task", metavar="TEXT", help="With --episodes: what the arm does in each, for their headers.")
 @option("--excite", is_flag=True, help="Turn the motors on and lead the arm along the motion that shows most about it.")
 @option(
     "--poses",
@@ -120,7 +138,7 @@ class RecordExciteAnswer(OnPort, LedRecordingFacts, Saved):
 @overwrite_option
 @yes_option
 @port_option
-@json_option(RecordAnswer | RecordExciteAnswer | RecordPosesAnswer)
+@json_option(RecordAnswer | RecordExciteAnswer | RecordPosesAnswer | RecordEpisodesAnswer)
 def command(
     out: Path,
     seconds: float | None,
@@ -128,6 +146,8 @@ def command(
     enable: bool,
     disengaged: bool,
     reconnect: bool,
+    episodes: int | None,
+    task: str | None,
     excite: bool,
     poses: int | None,
     arm_file: str | None,
@@ -149,6 +169,10 @@ def command(
     A port that goes away ends the log, which is whole and says so; with --reconnect it goes on when the port is back.
     That never starts a motor.
 
+    With --episodes the follower follows between the logs too, while you set the scene up anew. Enter, the space bar or
+    the right arrow begins and ends an episode; Backspace, d or the left arrow discards the one that runs, or the last;
+    Esc or q ends it all. The next call goes on with the next number.
+
     With --excite nobody needs to move the leader: this program leads the arm along a motion designed for `identify`,
     from where the arm is and back; with --poses to five poses again and again. It keeps the joints' limits, but knows
     of no table and no link in the way: clear the arm's surroundings, or narrow the joints' --range. A countdown on the
@@ -164,9 +188,19 @@ def command(
         raise BadUsage("--disengaged is for a leader that the follower follows; add --enable.")
     if not excite:
         _refuse(_OF_EXCITE, "--excite", seed=seed, budget=budget)
+    if episodes is None:
+        _refuse(_OF_EPISODES, "--episodes", task=task)
+    elif led or reconnect or overwrite:
+        other = led[0] if led else "--reconnect" if reconnect else "--overwrite"
+        raise BadUsage(f"--episodes is for motions that a person leads, in new files; leave {other} out.")
     if not led:
-        require_new(overwrite, out)
         _refuse(_OF_LED, "--excite or --poses", arm_file=arm_file, ranges=ranges, save_motion=save_motion)
+        if episodes is not None:
+            folder = Path("episodes") if out == Path(USUAL_LOG) else out
+            wanted = EpisodePlan(folder, task or "", episodes, seconds, every, enable, disengaged)
+            _record_episodes(wanted, port, as_json)
+            return
+        require_new(overwrite, out)
         chosen, length = choose_port(port), USUAL_RECORDING_S if seconds is None else seconds
         if reconnect:
             with progress() as report:
@@ -210,6 +244,30 @@ def command(
     else:
         result = {"port": device.port, **recording.as_dict(), "design": _facts(designed), **saved}
         show(as_json, result, tell_recording(chosen, recording, designed.text()))
+
+
+def _record_episodes(plan: EpisodePlan, port: str | None, as_json: bool) -> None:
+    if not plan.task.strip():
+        raise BadUsage(
+            '--episodes needs --task, which says what the arm does, such as --task "Put the cup on the plate".'
+        )
+    require_folder(plan.folder, "episodes")
+    chosen = choose_port(port)
+    with person_at_hand() as person:
+        if person is None:
+            plan = replace(plan, seconds=USUAL_RECORDING_S if plan.seconds is None else plan.seconds)
+        with Device(chosen) as device, progress() as report, _naming_every():
+            if plan.enable:
+                warn_page()
+            make_folder(plan.folder)
+            made = record_episodes(device, plan, person or Person(), report)
+    answer: RecordEpisodesAnswer = {
+        "port": chosen,
+        "task": plan.task,
+        "episodes": [one.as_dict() for one in made.kept],
+        "discarded": made.discarded,
+    }
+    show(as_json, answer, tell_episodes(chosen, made, followed=plan.enable))
 
 
 def _facts(designed: Design) -> DesignFacts:
@@ -290,6 +348,16 @@ def tell_recording(port: str, recording: Recording, *more: str, followed: bool =
     ]
     parts = (Sentences((describe(port, recording), *more)), Motions({"follower": log}))
     return Telling(parts, steps if followed else ())
+
+
+def tell_episodes(port: str, made: Episodes, followed: bool) -> Telling:
+    """The episodes that were kept, in sentences."""
+    gone = f" {counted(made.discarded, 'episode')} discarded." if made.discarded else ""
+    logs = [str(one.path) for one in made.kept]
+    parts = (Sentences((*(describe(port, one) for one in made.kept), f"{counted(len(logs), 'episode')} kept.{gone}")),)
+    return Telling(
+        parts, [Step("evaluate", "Measure how well it followed", {"logs": logs})] if followed and logs else ()
+    )
 
 
 def tell_visits(port: str, recording: Recording, made: Visits) -> Telling:

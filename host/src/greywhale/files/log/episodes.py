@@ -9,10 +9,14 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Mapping
+from pathlib import Path
 
 KEY = "task"
 # A spreadsheet takes a quote behind one of its separators for the beginning of a cell, which would have no end.
 _BEFORE_QUOTE = re.compile(r'[,;|](?="$)')
+# A name is such as episode_007.csv.
+PREFIX, DIGITS, SUFFIX = "episode_", 3, ".csv"
+NAME = re.compile(rf"{PREFIX}([0-9]{{{DIGITS},9}})\b.*{re.escape(SUFFIX)}")
 
 
 def task_line(task: str) -> str:
@@ -29,3 +33,10 @@ def task_in(facts: Mapping[str, str]) -> str | None:
     except ValueError:
         task = None
     return task if isinstance(task, str) else text or None
+
+
+def next_episode(folder: Path) -> Path:
+    """The log of the episode after those in a folder, finished or not."""
+    found = (NAME.match(path.name) for path in folder.glob(f"{PREFIX}*"))
+    numbers = [int(one[1]) for one in found if one]
+    return folder / f"{PREFIX}{max(numbers, default=-1) + 1:0{DIGITS}d}{SUFFIX}"
