@@ -6,6 +6,7 @@ a lock on the folder, so that two programs at once give them two numbers.
 
 from __future__ import annotations
 
+import logging
 import re
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
@@ -16,12 +17,14 @@ from pathlib import Path
 from greywhale.base import system
 from greywhale.base.errors import BadUsage, UserError, os_reason
 from greywhale.base.formats.whole import make_folder
-from greywhale.base.state import state_directory
+from greywhale.base.state import VARIABLE, state_directory
 from greywhale.board.pots import POTS
 from greywhale.files import parameter_file
 from greywhale.protocol.firmware import JOINTS
 from greywhale.protocol.ports import lasting_label
 from greywhale.protocol.table import ParameterTable
+
+logger = logging.getLogger(__name__)
 
 FOUND = "found"  # why: the board had it, and nobody knows from where
 # The parameters of a calibration; whoever goes back to an earlier one leaves all others as they are.
@@ -97,15 +100,22 @@ def keep(folder: Path, table: ParameterTable, why: str, now: datetime | None = N
 @contextmanager
 def keeping(port: str, before: ParameterTable, after: ParameterTable, why: str) -> Iterator[None]:
     """Keep both around what gives the board `after`: the one before it, even if it fails. Nothing where the calibration
-    stays.
+    stays. A history that cannot be written is a warning, no reason to leave a board as it is.
     """
     changes = calibration_of(before) != calibration_of(after)
-    folder = folder_of(port) if changes else Path()
-    if changes:
-        keep(folder, before, FOUND)
+    kept_before = changes and _try_to_keep(port, before, FOUND)
     yield
-    if changes:
-        keep(folder, after, why)
+    if kept_before:
+        _try_to_keep(port, after, why)
+
+
+def _try_to_keep(port: str, table: ParameterTable, why: str) -> bool:
+    try:
+        keep(folder_of(port), table, why)
+    except UserError as error:
+        logger.warning("%s This calibration is not in the history; %s names another folder.", error.message, VARIABLE)
+        return False
+    return True
 
 
 def _kept(path: Path) -> Kept | None:
