@@ -8,6 +8,7 @@ from collections.abc import Iterator
 import pytest
 from playwright.sync_api import BrowserContext, Page
 
+from greywhale.base import state
 from tests.page import stage as stages
 from tests.page.stage import Stage, await_state
 
@@ -16,6 +17,14 @@ from tests.page.stage import Stage, await_state
 def context() -> Iterator[BrowserContext]:
     with stages.browser() as browser, stages.profile(browser) as shared:
         yield shared
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _calibrations_of_their_own(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
+    """Every bench is the same board; the tests of another file have calibrated it, too."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv(state.VARIABLE, str(tmp_path_factory.mktemp("state")))
+        yield
 
 
 @contextlib.contextmanager

@@ -43,3 +43,10 @@ def test_a_parameter_is_changed_and_stored_and_what_is_stored_is_told(
             expect(found).to_have_attribute("title", "Another page drives this arm; let go there first.")
         expect(watcher.page.get_by_role("button", name="Save to a file")).to_be_enabled()
     require_no_barrier(page, DARK_AND_NARROW, views="Parameters")
+
+    page.get_by_label("joint0.limit_max").fill("1")
+    page.get_by_label("joint0.limit_max").press("Tab")
+    press(page, "Apply", "Store")
+    expect(page.get_by_text("The board has stored what runs.")).to_be_visible()
+    press(page, "Calibrate")
+    expect(page.get_by_text("Earlier calibrations (2)")).to_be_visible()

@@ -48,7 +48,7 @@ test("going back leaves all but the calibration", async () => {
   assert.deepEqual(again, changed({ "joint2.kp": 5, "leader0.zero": 8000 }));
 });
 
-test("what somebody damaged is set aside, and a full browser says so", async () => {
+test("what somebody damaged is set aside, and a full browser loses none and stops nobody", async () => {
   for (const damaged of ["{", "{}", "[{}]", "null", '[{"when":"x","why":"page","values":{}}]']) {
     const kept = new Map([[KEY, damaged]]);
     const own = new BrowserCalibrations(storage(kept), KEY);
@@ -57,6 +57,12 @@ test("what somebody damaged is set aside, and a full browser says so", async () 
     await own.keep(DEFAULTS, 1, "found");
     assert.equal((await own.list()).length, 1);
   }
-  const full = new BrowserCalibrations(storage(new Map(), 100), KEY);
-  await assert.rejects(full.keep(DEFAULTS, 1, "found"), /keeps no calibrations/);
+  const kept = new Map<string, string>();
+  await new BrowserCalibrations(storage(kept), KEY).keep(DEFAULTS, 1, "found");
+  const full = new BrowserCalibrations(storage(kept, kept.get(KEY)!.length + 1), KEY);
+  await full.keep(changed({ "leader0.zero": 8000 }), 1, "page");
+  assert.deepEqual((await full.list()).map(({ why }) => why), ["found"]);
+  const none = new BrowserCalibrations(new Store(() => { throw new Error("forbidden"); }), KEY);
+  await none.keep(DEFAULTS, 1, "found");
+  assert.deepEqual(await none.list(), []);
 });

@@ -19,7 +19,7 @@ WHY = {
     history.FOUND: "as the board was found",
     "calibrate": "after greywhale calibrate",
     "page": "after Calibrate in the page",
-    "set": "after greywhale params set",
+    "set": "after a change of parameters",
     "restore": "after greywhale params restore",
     "back": "after going back",
 }

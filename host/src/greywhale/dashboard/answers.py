@@ -27,7 +27,7 @@ from greywhale.files.paper_tables import controller_names, controller_path
 from greywhale.protocol import schema
 from greywhale.protocol.table import ParameterTable
 
-PAGES_REASONS = (history.FOUND, "page", "back")
+PAGES_REASONS = (history.FOUND, "page", "back", "set")
 _TICK = re.compile("[0-9]{1,10}")
 
 

@@ -71,12 +71,13 @@ export class Views {
     const arm = new ArmPicture(session, sources.arm);
     const leaderControl = bench && new LeaderControl(bench, session);
     if (leaderControl) arm.leadBy(leaderControl);
+    const calibrations = services?.calibrations ?? ownCalibrations(port !== null);
     const beside = [new PotBars(session), ...this.tryCards(leaderControl)];
     this.all = [
       new StartView(arm, beside, new Way(session, services, this.paths(), sources.docs)),
       ...(port ? [new ConnectView(session, port)] : []),
-      new LiveView(session, services ? inFolder(services) : undefined), this.controller, new ParametersView(session),
-      new CalibrateView(session, calibration, this.countdown, services?.calibrations ?? ownCalibrations(port !== null), bench),
+      new LiveView(session, services ? inFolder(services) : undefined), this.controller, new ParametersView(session, calibrations),
+      new CalibrateView(session, calibration, this.countdown, calibrations, bench),
       ...(this.verbs ? [this.verbs] : []),
       ...(services ? [new FilesView(session, services, (verb, given) => this.openVerb(verb, given))] : []),
       ...(bench && leaderControl ? [new BenchView(session, bench, leaderControl, arm, services, this.benchFirmware())] : []),

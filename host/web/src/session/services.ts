@@ -232,7 +232,7 @@ export interface Calibrations {
   /** The oldest first. */
   list(): Promise<readonly KeptCalibration[]>;
   /** Keeps that of a whole set in raw values, unless the newest is the same. */
-  keep(raw: readonly number[], board: number, why: "found" | "page" | "back"): Promise<void>;
+  keep(raw: readonly number[], board: number, why: "found" | "page" | "back" | "set"): Promise<void>;
 }
 
 export interface Services {

@@ -24,7 +24,7 @@ export class BrowserCalibrations implements Calibrations {
     const entry = { when: new Date().toISOString(), why, values };
     const newest = entries.at(-1);
     if (newest && !changesOf(newest, entry).length) return;
-    if (!this.store.write(this.key, JSON.stringify([...entries, entry]))) throw new Error("This browser keeps no calibrations for this page; save the parameters as a file.");
+    this.store.write(this.key, JSON.stringify([...entries, entry])); // a browser that keeps nothing must not hold a person back
   }
 
   private entries(): readonly Entry[] {

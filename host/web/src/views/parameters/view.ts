@@ -7,9 +7,11 @@ import type { Parameter } from "../../link/declared";
 import { TABLE } from "../../link/schema";
 import { button, download, el, fileField, setText, tableHead } from "../../parts/dom";
 import { grey } from "../../parts/grey";
+import { haveSameCalibration } from "../calibrate/earlier";
 import type { View } from "../view";
 import type { NamedText } from "../../parts/named_text";
 import { physicalText } from "../../files/log";
+import type { Calibrations } from "../../session/services";
 import type { Session } from "../../session/session";
 
 export class ParametersView implements View {
@@ -27,7 +29,7 @@ export class ParametersView implements View {
   private waiting = 0;
   private last: Promise<void> = Promise.resolve();
 
-  constructor(private readonly session: Session) {
+  constructor(private readonly session: Session, private readonly calibrations: Calibrations) {
     this.inputs = TABLE.parameters.map((parameter) => this.field(parameter));
     const head = tableHead("parameter", "value", "unit", "from", "to");
     const rows = TABLE.parameters.map((parameter, place) => el("tr", { title: parameter.description },
@@ -82,8 +84,10 @@ export class ParametersView implements View {
   }
 
   private async run(): Promise<void> {
-    const raw = [...await this.session.readParameters()];
+    const before = await this.session.readParameters();
+    const raw = [...before];
     for (const [index, value] of this.edited) raw[index] = value;
+    if (!haveSameCalibration(before, raw)) await this.calibrations.keep(before, this.session.hello!.board, "found");
     await this.session.apply(raw);
     this.edit(new Map());
     setText(this.said, "The changes run; Store keeps them.");
@@ -91,6 +95,8 @@ export class ParametersView implements View {
 
   private async keepRunning(): Promise<void> {
     await this.session.store();
+    const { parameters, hello } = this.session;
+    if ((await this.calibrations.list()).length) await this.calibrations.keep(parameters!, hello!.board, "set");
     setText(this.said, "What runs is stored.");
   }
 
