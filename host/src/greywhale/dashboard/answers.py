@@ -154,7 +154,7 @@ class Answers:
         why = asked.get("why")
         if why not in PAGES_REASONS:
             raise BadUsage(f"why must be one of {', '.join(PAGES_REASONS)}.")
-        history.keep(history.folder_of(self._port()), _table_of(asked), why)
+        history.try_to_keep(self._port(), _table_of(asked), why)
         return {}
 
     def _port(self) -> str:

@@ -100,16 +100,17 @@ def keep(folder: Path, table: ParameterTable, why: str, now: datetime | None = N
 @contextmanager
 def keeping(port: str, before: ParameterTable, after: ParameterTable, why: str) -> Iterator[None]:
     """Keep both around what gives the board `after`: the one before it, even if it fails. Nothing where the calibration
-    stays. A history that cannot be written is a warning, no reason to leave a board as it is.
+    stays.
     """
     changes = calibration_of(before) != calibration_of(after)
-    kept_before = changes and _try_to_keep(port, before, FOUND)
+    kept_before = changes and try_to_keep(port, before, FOUND)
     yield
     if kept_before:
-        _try_to_keep(port, after, why)
+        try_to_keep(port, after, why)
 
 
-def _try_to_keep(port: str, table: ParameterTable, why: str) -> bool:
+def try_to_keep(port: str, table: ParameterTable, why: str) -> bool:
+    """Keep the calibration of the board at a port; a history that cannot be written is a warning, and False."""
     try:
         keep(folder_of(port), table, why)
     except UserError as error:
