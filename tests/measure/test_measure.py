@@ -16,7 +16,7 @@ from greywhale.files.log import Log
 from greywhale.files.log.layout import Origin
 from greywhale.measure import evaluate
 from greywhale.measure.delay import correlations
-from greywhale.measure.runs import gap_free_runs, last_part
+from greywhale.measure.runs import gap_free_runs, last_part, resting
 
 STEP = 0.5
 TIME = np.arange(0, 10, 0.001)
@@ -233,3 +233,12 @@ def test_only_joints_in_use_count() -> None:
     assert found.joints_in_use == (0, 1)
     assert found.total_mse == pytest.approx(found.joints[0].mse + found.joints[1].mse)
     assert [joint["in_use"] for joint in found.as_dict()["joints"]] == [True, True, False, False]
+
+
+def test_a_long_log_rests_where_its_parts_do() -> None:
+    """Rests are found part by part; one across the border of two is none the less found."""
+    angle = np.cumsum(np.random.default_rng(3).choice([0.0, 0.0, 0.0, 0.01], 600_000))
+    rest = resting(angle, 8, 0.015)
+    windows = np.lib.stride_tricks.sliding_window_view(angle, 9)
+    np.testing.assert_array_equal(rest[8:], np.ptp(windows, axis=1) <= 0.015)
+    assert not rest[:8].any()

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import resource
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -163,3 +165,22 @@ def test_every_format_leads_to_a_writer() -> None:
     for one in FORMATS.values():
         module, _, name = one.writer.partition(":")
         assert callable(getattr(__import__(f"{formats.__package__}.{module}", fromlist=[name]), name))
+
+
+@pytest.fixture
+def little_room() -> Iterator[None]:
+    """No file may grow beyond 4 KB, as where the disk is full."""
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (4096, before[1]))
+    yield
+    resource.setrlimit(resource.RLIMIT_FSIZE, before)
+
+
+@pytest.mark.parametrize("name", FORMATS)
+def test_a_full_disk_is_said_and_leaves_nothing(
+    recording: Recording, tmp_path: Path, name: str, little_room: None
+) -> None:
+    out = tmp_path / f"new.{name}"
+    with pytest.raises(UserError, match="cannot be written: file too large"):
+        write(name, [recording], out, ExportOptions(1, 0.5, 0.1) if name == "bam" else NONE)
+    assert [path.name for path in tmp_path.iterdir()] == ["log.csv"]

@@ -57,10 +57,11 @@ def correlations(leader: Floats, follower: Floats, first: int, last: int) -> Flo
     ahead, behind = np.maximum(lags, 0), np.maximum(-lags, 0)
     count = len(a) - np.abs(lags)
     sum_a, sum_b = _sums(a, behind, ahead), _sums(b, ahead, behind)
-    spread_a = _sums(a * a, behind, ahead) - sum_a**2 / count
-    spread_b = _sums(b * b, ahead, behind) - sum_b**2 / count
+    largest = np.sqrt(a.dot(a) * b.dot(b))
+    spread_a = _sums(np.square(a, out=a), behind, ahead) - sum_a**2 / count
+    spread_b = _sums(np.square(b, out=b), ahead, behind) - sum_b**2 / count
     scale = np.sqrt(np.maximum(spread_a, 0.0) * np.maximum(spread_b, 0.0))
-    still = scale <= _STILL * np.sqrt(a.dot(a) * b.dot(b))
+    still = scale <= _STILL * largest
     return np.where(still, 0.0, (products - sum_a * sum_b / count) / np.where(still, 1.0, scale))
 
 

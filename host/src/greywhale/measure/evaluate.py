@@ -174,6 +174,11 @@ def _ripple(voltage: Floats, run: Run) -> float | None:
     return float(ripple_of_record(voltage[run.slice, None])[0])
 
 
+def _mean_square(error: Floats) -> float:
+    """The mean square; the errors are lost."""
+    return float(np.mean(np.square(error, out=error)))
+
+
 def _mean_error(error: Floats) -> float | None:
     return float(np.mean(np.abs(error))) if error.size else None
 
@@ -185,7 +190,6 @@ def _joint(
     measured: NDArray[np.bool_],
     runs: list[Run],
 ) -> tuple[JointMeasures, float]:
-    error = leader - follower
     at_rest, at_end, at_begin = np.zeros((3, len(leader)), dtype=bool)
     onsets: list[float] = []
     answers: list[StepResponse] = []
@@ -203,18 +207,22 @@ def _joint(
             answers += [] if found is None else [found]
     longest = max(runs, key=lambda run: run.stop - run.start)
     overshoot, settling = worst(answers)
+    final = at_end & ~at_begin
+    settled = final if final.any() else at_end
+    # Rows are copied only where some are left out, and one copy is gone before the next: a log of an hour is large.
+    part = slice(None) if measured.all() else measured
     measures = JointMeasures(
-        mse=float(np.mean(error[measured] ** 2)),
-        steady_state_error=_mean_error(error[final if (final := at_end & ~at_begin).any() else at_end]),
+        mse=_mean_square(leader[part] - follower[part]),
+        steady_state_error=_mean_error(leader[settled] - follower[settled]),
         delay_s=correlation_delay(leader[longest.slice], follower[longest.slice], longest.period),
         onset_delay_s=float(np.mean(onsets)) if onsets else None,
         steps=len(onsets),
-        follows=follows(leader[measured], follower[measured], longest.period),
+        follows=follows(leader[part], follower[part], longest.period),
         overshoot_percent=overshoot,
         settling_s=settling,
         unsettled_steps=sum(one.settling_s is None for one in answers),
         ripple_v=_ripple(voltage, longest),
-        settling_error=_mean_error(error[at_rest]),
+        settling_error=_mean_error(leader[at_rest] - follower[at_rest]),
     )
     return measures, float(np.count_nonzero(at_rest) * longest.period)
 

@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 
 # A step of time longer than this many periods is a gap: samples were lost.
 _GAP = 1.5
+# Rows that are filtered at once, so that a log of an hour needs little memory.
+_PART = 1 << 18
 # A leader rests that has stayed within the band (rad) for so long (s).
 REST_S, REST_RAD = 0.5, 0.02
 
@@ -48,8 +50,8 @@ def gap_free_runs(time: NDArray[np.float64], wanted: NDArray[np.bool_], no_gap_s
 
     In any case samples within `no_gap_s` are neighbours.
     """
-    steps = np.diff(time)
-    joined = (steps <= max(_GAP * float(np.median(steps)), no_gap_s)) & wanted[1:] & wanted[:-1]
+    most = max(_GAP * float(np.median(np.diff(time), overwrite_input=True)), no_gap_s)
+    joined = (np.diff(time) <= most) & wanted[1:] & wanted[:-1]
     return [Run(start, stop + 1, float(time[stop] - time[start]) / (stop - start)) for start, stop in stretches(joined)]
 
 
@@ -59,11 +61,13 @@ def resting(angle: NDArray[np.float64], window: int, band: float) -> NDArray[np.
     size = window + 1
     if len(angle) < size:
         return rest
-    # The filters are centred. Shifting their origin makes them look only backwards.
+    # The filters are centred. Shifting their origin makes them look only backwards, so a long log is filtered by parts.
     origin = window // 2
-    highest = scipy.ndimage.maximum_filter1d(angle, size, origin=origin)
-    lowest = scipy.ndimage.minimum_filter1d(angle, size, origin=origin)
-    rest[window:] = (highest - lowest)[window:] <= band
+    for begin in range(window, len(angle), _PART):
+        part = angle[begin - window : begin + _PART]
+        highest = scipy.ndimage.maximum_filter1d(part, size, origin=origin)
+        lowest = scipy.ndimage.minimum_filter1d(part, size, origin=origin)
+        rest[begin : begin + _PART] = (highest - lowest)[window:] <= band
     return rest
 
 

@@ -22,6 +22,7 @@ from greywhale.pictures import looks
 from greywhale.pictures.kinds import kind_of
 from greywhale.pictures.page import JOINTS, WIDE, headline, leave, legend_below, save, style
 from greywhale.pictures.plotting import Artist, Axes, Figure, Line2D, plt
+from greywhale.pictures.thinning import thin
 from greywhale.protocol.joints import ALL, Joints
 from greywhale.protocol.table import ParameterTable
 
@@ -63,7 +64,8 @@ def trace(log: Log, label: str, supply_v: float | None = None) -> Trace:
         table = ParameterTable.defaults()
     if supply_v is None and table is not None:
         supply_v = table.supply_v
-    part = following_rows(log)
+    following = following_rows(log)
+    part = slice(None) if following.all() else following  # without a copy of all that there is
     time = log.time[part]
     mse = tuple(joint.mse for joint in evaluate(log).joints)
     voltage = log.voltage[part] if log.voltage.shape[1] else None
@@ -167,16 +169,16 @@ def _limits(traces: Sequence[Trace]) -> dict[str, float]:
 
 def _draw_angle(axes: Axes, traces: Sequence[Trace], joint: int) -> None:
     for _, look, one in _leaders(traces):
-        axes.plot(one.time, one.leader[:, joint], zorder=_OVER, **look.line)
+        axes.plot(*thin(one.time, one.leader[:, joint]), zorder=_OVER, **look.line)
     for one, look in zip(traces, _looks(traces), strict=True):
-        axes.plot(one.time, one.follower[:, joint], **look.line)
+        axes.plot(*thin(one.time, one.follower[:, joint]), **look.line)
     axes.set_ylabel("angle [rad]")
 
 
 def _draw_error(axes: Axes, traces: Sequence[Trace], joint: int) -> None:
     axes.axhline(0.0, color=looks.DARK, linewidth=0.5)
     for one, look in zip(traces, _looks(traces), strict=True):
-        axes.plot(one.time, one.leader[:, joint] - one.follower[:, joint], **look.thin().line)
+        axes.plot(*thin(one.time, one.leader[:, joint] - one.follower[:, joint]), **look.thin().line)
     axes.set_ylabel("error [rad]")
 
 
@@ -189,8 +191,8 @@ def _draw_voltage(axes: Axes, traces: Sequence[Trace], joint: int) -> None:
     for one, look in zip(traces, voltages, strict=True):
         if one.voltage is not None:
             line = look.thin(looks.VOLTAGE.width).line
-            axes.plot(one.time, one.voltage[:, joint], alpha=_FAINT, **line)
-            axes.plot(one.time, _average(one.time, one.voltage[:, joint]), **line)
+            axes.plot(*thin(one.time, one.voltage[:, joint]), alpha=_FAINT, **line)
+            axes.plot(*thin(one.time, _average(one.time, one.voltage[:, joint])), **line)
     most = _VOLTAGE_ROOM * max(limits.values(), default=1.0)
     axes.set_ylim(-most, most)
     axes.set_ylabel("voltage [V]")

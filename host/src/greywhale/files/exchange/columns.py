@@ -1,4 +1,4 @@
-"""Which column of another program's file becomes which column of a log, in which unit, with which sign and offset."""
+"""The columns of another program's file that become those of a log, each with its unit, sign and offset."""
 
 from __future__ import annotations
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from greywhale.base.errors import counted
 from greywhale.files.log.check import Check, compare, rows_stated
-from greywhale.files.log.units import doubt_spacing
+from greywhale.files.log.units import doubt_spacing, usual_step
 
 # Fewer missing samples in a row are no gap: a link may lose some.
 _MOST_MISSING_SAMPLES = 10
@@ -59,8 +59,8 @@ def judge_condition(name: str, facts: Mapping[str, str], crc: int, time_s: NDArr
 
 def gaps_in(time_s: NDArray[np.float64]) -> tuple[Gap, ...]:
     """The gaps, in which more than ten samples in a row are missing, by the usual time between two rows."""
+    period = max(usual_step(time_s), _SHORTEST_S)
     steps = np.diff(time_s)
-    period = max(float(np.median(steps)), _SHORTEST_S)
     # Clocks and decimals round.
     rows = np.flatnonzero(steps > (_MOST_MISSING_SAMPLES + 1.5) * period)
     return tuple(

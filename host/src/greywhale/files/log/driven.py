@@ -29,7 +29,10 @@ def following_rows(log: Log) -> NDArray[np.bool_]:
 
 def driven_rows(log: Log) -> NDArray[np.bool_]:
     """The following rows; in a log that has none, the rows near a voltage, since the motors were off elsewhere."""
-    powered = np.flatnonzero((np.abs(log.voltage) >= LEAST_V).any(axis=1))
+    some = np.zeros(len(log.time), dtype=bool)
+    for volts in log.voltage.T:  # one after another: all at once a log of an hour would be there twice
+        some |= np.abs(volts) >= LEAST_V
+    powered = np.flatnonzero(some)
     if not powered.size or (log.state == "following").any():
         return following_rows(log)
     after = np.searchsorted(powered, np.arange(len(log.time)))
@@ -41,8 +44,8 @@ def driven_rows(log: Log) -> NDArray[np.bool_]:
 
 def undriven(log: Log, rows: NDArray[np.bool_]) -> tuple[int, ...]:
     """The joints in use whose voltage is the same in all these rows."""
-    volts = log.voltage[rows]
-    return tuple(joint for joint in log.joints_in_use if not len(volts) or np.ptp(volts[:, joint]) < LEAST_V)
+    some = rows.any()
+    return tuple(joint for joint in log.joints_in_use if not some or _range(log.voltage, rows, joint) < LEAST_V)
 
 
 def tell_off(log: Log) -> str:

@@ -30,7 +30,7 @@ def refuse_other_spacing(name: str, every_ticks: int | None, dropped: int, time_
     if every_ticks is None or len(time_s) < _ENOUGH_ROWS:
         return
     stated = every_ticks * TICK_S
-    usual, length = float(np.median(np.diff(time_s))), float(time_s[-1] - time_s[0])
+    usual, length = usual_step(time_s), float(time_s[-1] - time_s[0])
     missing = length / stated - len(time_s)
     if _SHORTER_RATIO <= usual / stated <= _LONGER_RATIO or (usual > stated and dropped >= missing / 2):
         return
@@ -46,7 +46,7 @@ def refuse_other_spacing(name: str, every_ticks: int | None, dropped: int, time_
 
 def doubt_spacing(time_s: Floats) -> tuple[str, ...]:
     """A doubt about the times of a log whose header says nothing of them, as a sentence that follows its name."""
-    usual = float(np.median(np.diff(time_s)))
+    usual = usual_step(time_s)
     if len(time_s) < _ENOUGH_ROWS or USUAL_S[0] <= usual <= USUAL_S[1]:
         return ()
     unit = "ms" if usual > USUAL_S[1] else "min"
@@ -74,6 +74,11 @@ def doubt_angles(*angles: Floats) -> tuple[str, ...]:
 def perhaps_degrees(largest: float) -> str:
     """A clause for an angle of so many rad that is out of range: that it may be in degrees, or nothing."""
     return f"; angles reach {largest:.3g}, so they seem to be in degrees" if _TURN_RAD < largest < _MOST_DEG else ""
+
+
+def usual_step(time_s: Floats) -> float:
+    """The median time between two rows, s."""
+    return float(np.median(np.diff(time_s), overwrite_input=True))  # an hour of samples is not copied once more
 
 
 def _unit_of(ratio: float) -> str:
