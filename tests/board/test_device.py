@@ -13,7 +13,7 @@ import pytest
 import serial
 
 from greywhale.base.errors import UserError
-from greywhale.board.device import Device, NoAnswerError
+from greywhale.board.device import STOP_REPEAT_S, Device, NoAnswerError
 from greywhale.board.refusal import RefusedError
 from greywhale.protocol import schema
 from greywhale.protocol.frames import encode_frame
@@ -213,6 +213,26 @@ def test_an_unconfirmed_stop_without_lease_says_what_to_do() -> None:
         board.faults.silent = True
         with pytest.raises(UserError, match="switch the motors' supply off"):
             device.stop()
+
+
+class SlowlyRead(FakeBoard):
+    """A look at it takes a little longer than a stop waits for its answer, as one at a port of the system does."""
+
+    def read(self) -> bytes:
+        if not (taken := super().read()):
+            self.wait(STOP_REPEAT_S)
+        assert self.clock() < 60.0
+        return taken
+
+
+def test_an_unconfirmed_stop_ends_at_a_port_that_is_slow_to_say_nothing() -> None:
+    with SlowlyRead() as board, open_device(board) as device:
+        device.enable(500)
+        board.faults.silent = True
+        begin = board.clock()
+        with pytest.raises(UserError, match="within 500 ms"):
+            device.stop()
+        assert board.clock() < begin + 3.5
 
 
 def test_a_restart_during_a_request_is_named() -> None:

@@ -287,8 +287,9 @@ class Device:
             looked = self._transport.clock()
             self._transport.write(message)
             deadline = looked + wait_s
-            # A computer that stood still for that long looks once more: the answer may have waited all the time.
-            while (now := self._transport.clock()) < deadline or now > looked + wait_s:
+            # A computer that stood still for long looks once more: the answer may have waited all the time. One look
+            # alone may take as long as a stop waits.
+            while (now := self._transport.clock()) < deadline or now > looked + REPLY_WAIT_S:
                 looked = now
                 with contextlib.suppress(*ignored):
                     self._receive()
