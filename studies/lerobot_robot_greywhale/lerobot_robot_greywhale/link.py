@@ -9,12 +9,14 @@ from __future__ import annotations
 import math
 import os
 import threading
+import time
 from contextlib import ExitStack
 from enum import Enum
 from typing import ClassVar
 
 import numpy as np
 
+from greywhale.base.errors import UserError
 from greywhale.base.types import Floats
 from greywhale.board.device import Device
 from greywhale.board.lead import Leading, leadable
@@ -34,6 +36,7 @@ AHEAD_POINTS = 4
 # Within so many ticks of their start the samples must show that the motors are on.
 _START_TICKS = 1000
 _LOOK_S = 0.1  # between two looks of a caller who waits
+_STALE_S = 1.0  # an older sample says nothing of the arm
 
 
 class Motors(Enum):
@@ -81,6 +84,7 @@ class Link:
         self._goal: Goal | None = None
         self._leading: Leading | None = None
         self._newest: schema.Sample | None = None
+        self._heard_s = 0.0
         self._error: BaseException | None = None
         self._thread = threading.Thread(target=self._run, name="greywhale-lerobot", daemon=True)
         self._thread.start()
@@ -127,11 +131,16 @@ class Link:
                 self._changed.wait(_LOOK_S)
 
     def sample(self) -> schema.Sample:
-        """The newest sample."""
+        """The newest sample; UserError where that is old."""
         with self._changed:
             while self._newest is None or self._error is not None:
                 self._raise()
                 self._changed.wait(_LOOK_S)
+            if time.monotonic() > self._heard_s + _STALE_S:
+                raise UserError(
+                    f"{self.device.port}: no sample came for {_STALE_S:g} s, so the motors go off by themselves; check "
+                    "cable and supply, and connect again."
+                )
             return self._newest
 
     def given_now(self, joints: Joints) -> dict[str, float]:
@@ -163,7 +172,7 @@ class Link:
                         return
                     self._look(one)
                     with self._changed:
-                        self._newest = one.sample
+                        self._newest, self._heard_s = one.sample, time.monotonic()
                         self._changed.notify_all()
         except BaseException as error:
             with self._changed:
