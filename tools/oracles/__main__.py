@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 
 from tools import ROOT
-from tools.oracles import node, wheelhouse
+from tools.oracles import lerobot, node, wheelhouse
 from tools.setup import stamps, system, venv
 from tools.setup.console import SetupError, say
 
@@ -38,6 +38,7 @@ def main() -> int:
             stamps.set_current("oracles", wanted)
         wheelhouse.step()
         node.step()
+        lerobot.step()
     except SetupError as error:
         print(f"set-up: {error}", file=sys.stderr)
         return 1
