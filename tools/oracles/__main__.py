@@ -22,6 +22,8 @@ DEBIAN = (
     "qemu-system-arm",
     "g++-aarch64-linux-gnu",  # the native code on 64-bit ARM
     "qemu-user",
+    "arduino-builder",  # the examples of the library as the Arduino IDE compiles them
+    "arduino-core-avr",
     "openssl",  # certificates for a scheduler of studies
 )
 REQUIREMENTS = ROOT / "tools" / "oracles" / "requirements.txt"
