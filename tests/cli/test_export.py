@@ -66,6 +66,8 @@ def test_a_log_becomes_the_named_file(tmp_path: Path) -> None:
         (["--urdf", "default", "--mjcf", "default"], "exactly one of"),
         (["--urdf", "default", "--gears"], "--gears goes with --mjcf"),
         (["--urdf", "default", "--joint", "1"], "--joint goes with a controller"),
+        (["--urdf", "default", "--task", "Wave"], "are for logs"),
+        (["log.csv", "--to", "npz", "--fps", "30"], "--fps does not go with --to npz"),
     ],
 )
 def test_what_to_write_must_be_clear(tmp_path: Path, arguments: list[str], complaint: str) -> None:
