@@ -223,16 +223,16 @@ def _column(values: NDArray[Any]) -> Any:
 
 def _statistics(values: NDArray[Any]) -> dict[str, NDArray[Any]]:
     """An episode's statistics of each component, of a window over all its samples; `count` counts frames."""
-    rows = values.reshape(-1, values.shape[-1] if values.ndim > 1 else 1).astype(np.float64)
-    quantiles = np.quantile(rows, list(_QUANTILES.values()), axis=0)
-    return {
-        "min": rows.min(axis=0),
-        "max": rows.max(axis=0),
-        "mean": rows.mean(axis=0),
-        "std": rows.std(axis=0),
-        "count": np.array([len(values)]),
-        **dict(zip(_QUANTILES, quantiles, strict=True)),
-    }
+    components = values.reshape(-1, values.shape[-1] if values.ndim > 1 else 1).T
+    each = [_statistics_of(one.astype(np.float64)) for one in components]  # one at a time: a window holds all samples
+    found = {name: np.array([one[name] for one in each]) for name in each[0]}
+    return {**found, "count": np.array([len(values)])}
+
+
+def _statistics_of(values: NDArray[np.float64]) -> dict[str, Any]:
+    quantiles = np.quantile(values, list(_QUANTILES.values()))
+    extremes = {"min": values.min(), "max": values.max(), "mean": values.mean(), "std": values.std()}
+    return {**extremes, **dict(zip(_QUANTILES, quantiles, strict=True))}
 
 
 def _aggregate(episodes: list[dict[str, NDArray[Any]]]) -> dict[str, list[float]]:

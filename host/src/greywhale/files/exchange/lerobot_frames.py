@@ -71,7 +71,7 @@ def frames_of(recording: Recording, fps: int) -> Episode:
     places = np.arange(count) * _TICKS_PER_S // (fps * every)
     joints = list(log.joints_in_use)
     _, *seen = recording.quantities  # the leader is the action
-    samples = np.hstack([one.values[begin:end, joints] for one in seen]).astype(np.float32)
+    samples = np.hstack([one.values[begin:end, joints].astype(np.float32) for one in seen])
     window = sliding_window_view(samples, width, axis=0)[places].transpose(0, 2, 1)
     return Episode(
         joints=log.joints_in_use,
