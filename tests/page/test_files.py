@@ -9,10 +9,11 @@ import pytest
 from playwright.sync_api import BrowserContext, Page, expect
 
 from greywhale.files.log import LogWriter, read_log
+from greywhale.files.log.check import Check
 from greywhale.files.log.layout import Origin
 from greywhale.measure import evaluate
 from tests.page import stage as stages
-from tests.page.stage import Stage
+from tests.page.stage import Stage, await_state
 
 pytestmark = pytest.mark.slow
 
@@ -129,3 +130,49 @@ def require_an_error_beside_a_log(page: Page) -> None:
     expect(told).to_contain_text("'<b>x</b>' is not one of boot, disabled")
     expect(page.get_by_role("button", name="late.csv")).to_have_attribute("aria-pressed", "true")
     expect(page.get_by_role("button", name="bad.csv")).to_have_attribute("aria-pressed", "false")
+
+
+def test_episodes_are_begun_ended_and_discarded_by_keys(page: Page, stage: Stage) -> None:
+    task = 'Put the "Würfel", then \U0001f95b'
+    page.get_by_role("button", name="Live", exact=True).click()
+    write(stage.folder / "episode_006.csv", 40)
+    card = page.locator(".card").filter(has_text="Episodes")
+    page.locator("main").focus()
+    page.keyboard.press("r")
+    expect(page.get_by_role("alert").filter(has_text="An episode has a task")).to_be_visible()
+    card.get_by_label("Task").fill(task + "r")  # a letter in a field is no key
+    card.get_by_label("Task").press("Backspace")
+    page.locator("main").focus()
+
+    def record(end: str) -> None:
+        page.keyboard.press("r")
+        expect(card.get_by_role("button", name="End episode")).to_be_visible()
+        stage.live(0.2)
+        page.wait_for_function(f"() => Number(document.querySelector('.live').dataset.tick) >= {stage.newest().tick}")
+        page.keyboard.press(end)
+
+    for kept in ("episode_007.csv", "episode_008.csv"):
+        record("r")
+        expect(card).to_contain_text(f"the last is {kept}.")
+        log = read_log(stage.folder / kept)
+        assert (log.origin.task, log.complete, log.condition.check) == (task, True, Check.WHOLE)
+        assert log.time.size >= 200
+    page.keyboard.press("d")
+    expect(card).to_contain_text("1 kept, the last is episode_007.csv.")
+    record("d")
+    expect(card.get_by_role("button", name="Begin episode")).to_be_visible()
+    record("r")
+    expect(card).to_contain_text("2 kept, the last is episode_008.csv.")
+    stage.hold(20)
+    page.get_by_role("button", name="Enable").click()
+    await_state(page, "following")
+    page.locator("main").focus()
+    page.keyboard.press("r")
+    stage.command("pot follower 1 open")
+    expect(card).to_contain_text("3 kept, the last is episode_009.csv.")
+    log = read_log(stage.folder / "episode_009.csv")
+    assert (log.complete, log.state[-1]) == (False, "fault")
+    assert log.ended_by.startswith("The board is in fault: a potentiometer reads at ")
+    assert sorted(path.name for path in stage.folder.glob("episode_*")) == [f"episode_00{n}.csv" for n in (6, 7, 8, 9)]
+    stage.command("pot follower 1 connected")
+    page.get_by_role("button", name="Clear fault").click()

@@ -17,7 +17,7 @@ from greywhale.base.formats import toml_file
 from greywhale.base.formats.kinds import Kind
 from greywhale.board.calibrate import history
 from greywhale.files.controller import Controller, stored_as
-from greywhale.files.log import check, layout, parameters
+from greywhale.files.log import check, episodes, layout, parameters
 from greywhale.protocol.firmware import JOINTS
 from greywhale.protocol.schema import PARAMETER_BY_NAME
 from tools.generate.current import keep_current
@@ -62,11 +62,14 @@ def _log() -> str:
         "check": check.KEY,
         "parameters": parameters.KEY,
         "complete": layout.COMPLETE,
+        "interrupted": layout.INTERRUPTED,
+        "task": episodes.KEY,
+        "episode": {"prefix": episodes.PREFIX, "digits": episodes.DIGITS, "suffix": episodes.SUFFIX},
         "heading": layout.HEADING,
         "timeDigits": layout.TIME_DIGITS,
         "quantities": list(layout.QUANTITIES.items()),
     }
-    return f"export const LOG = {json.dumps(facts)} as const;"
+    return f"export const LOG = {json.dumps(facts)} as const;\nexport const EPISODE = {_pattern(episodes.NAME)};"
 
 
 def _limits() -> str:

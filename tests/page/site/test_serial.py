@@ -119,6 +119,17 @@ def test_a_board_is_watched_driven_and_changed(context: BrowserContext, site: Si
             press(page, "Stop", "End recording")
         saved.value.save_as(tmp_path / "recording.csv")
         assert {"soft_start", "following"} <= set(read_log(tmp_path / "recording.csv").state)
+        page.get_by_label("Task").fill("Wave")
+        page.get_by_role("main").focus()
+        page.keyboard.press("r")
+        live(page, bench, 0.1)
+        with page.expect_download() as saved:
+            page.keyboard.press("r")
+        assert saved.value.suggested_filename == "episode_000.csv"
+        saved.value.save_as(tmp_path / "episode.csv")
+        assert read_log(tmp_path / "episode.csv").origin.task == "Wave"
+        theirs = "episode_000.csv is among your browser's downloads; delete it there."
+        expect(page.get_by_role("button", name="Discard")).to_have_attribute("title", theirs)
 
         wanted = tmp_path / "controller.toml"
         wanted.write_text(paper_table("table_10").read_text("utf-8"))

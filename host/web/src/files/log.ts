@@ -4,20 +4,33 @@ import { Board, type HelloReply, State, TABLE } from "../link/schema";
 import type { Parameter } from "../link/declared";
 import { crc32 } from "../link/crc32";
 import { JOINTS, TICKS_A_SECOND, type Samples } from "../session/samples";
-import { LOG } from "./rules";
+import { EPISODE, LOG } from "./rules";
 
 /** The header's facts on the origin of the samples; `raw` is the board's parameter table, null when it is not read. */
 export type Origin = { readonly hello: HelloReply | null; readonly raw: readonly number[] | null };
 
+/** What a log is an episode of, and why it ended early, "" where it did not. */
+export type Episode = { readonly task: string; readonly cause: string };
+
+/** The name of the episode after those among these names. */
+export function nextEpisode(names: readonly string[]): string {
+  const { prefix, digits, suffix } = LOG.episode;
+  const numbers = names.map((name) => Number(EPISODE.exec(name)?.[1] ?? -1));
+  return `${prefix}${String(Math.max(-1, ...numbers) + 1).padStart(digits, "0")}${suffix}`;
+}
+
 /** The log of the samples from `from` to before `to`. */
-export function logText(samples: Samples, from: number, to: number, origin: Origin): string {
+export function logText(samples: Samples, from: number, to: number, origin: Origin, episode: Episode = { task: "", cause: "" }): string {
   const rows = Array.from({ length: to - from }, (_, i) => row(samples, from + i));
   const body = rows.join("");
-  const facts = headerFacts(samples, from, to, origin);
+  const facts = headerFacts(samples, from, to, origin, episode.cause);
   const covered = [...facts].sort(([a], [b]) => (a < b ? -1 : 1)).map(([key, value]) => `${key}: ${value}\n`).join("");
   const check = crc32(covered, crc32(body)).toString(16).padStart(8, "0");
   const header = facts.map(([key, value]) => `# ${key}: ${value}\n`).join("");
-  return `# ${LOG.title}\n${header}# ${LOG.check}: ${rows.length} rows, crc32 ${check}\n${LOG.heading}\n${body}`;
+  // The check leaves the task out. JSON in ASCII, as the host writes it.
+  const words = JSON.stringify(episode.task).replace(/[\u0080-\uffff]|[,;|](?="$)/g, (letter) => `\\u${letter.charCodeAt(0).toString(16).padStart(4, "0")}`);
+  const task = episode.task && `# ${LOG.task}: ${words}\n`;
+  return `# ${LOG.title}\n${header}${task}# ${LOG.check}: ${rows.length} rows, crc32 ${check}\n${LOG.heading}\n${body}`;
 }
 
 function row(samples: Samples, number: number): string {
@@ -27,7 +40,7 @@ function row(samples: Samples, number: number): string {
   return `${time},${cells.join(",")},${State.of(samples.state[number % samples.capacity]!).name}\n`;
 }
 
-function headerFacts(samples: Samples, from: number, to: number, { hello, raw }: Origin): [string, string][] {
+function headerFacts(samples: Samples, from: number, to: number, { hello, raw }: Origin, cause: string): [string, string][] {
   const facts: [string, string][] = [];
   if (hello) {
     facts.push(["firmware", `${hello.fw_major}.${hello.fw_minor}.${hello.fw_patch}`]);
@@ -40,7 +53,7 @@ function headerFacts(samples: Samples, from: number, to: number, { hello, raw }:
   facts.push(["every_ticks", "1"]);
   if (raw) facts.push(...tableLines(raw));
   const ticks = to > from ? samples.timeOf(to - 1) - samples.timeOf(from) + 1 : 0;
-  facts.push(["dropped_samples", String(ticks - (to - from))], ["recording", LOG.complete], ["ended_by", ""]);
+  facts.push(["dropped_samples", String(ticks - (to - from))], ["recording", cause ? LOG.interrupted : LOG.complete], ["ended_by", cause]);
   return facts;
 }
 

@@ -3,7 +3,8 @@
 
 import type { FileKind, Schema } from "./schema_types";
 
-export const LOG = {"title": "greywhale log 1", "check": "check", "parameters": "parameters", "complete": "complete", "heading": "time_s,leader_0,leader_1,leader_2,leader_3,follower_0,follower_1,follower_2,follower_3,voltage_0,voltage_1,voltage_2,voltage_3,state", "timeDigits": 6, "quantities": [["leader", 6], ["follower", 6], ["voltage", 3]]} as const;
+export const LOG = {"title": "greywhale log 1", "check": "check", "parameters": "parameters", "complete": "complete", "interrupted": "interrupted", "task": "task", "episode": {"prefix": "episode_", "digits": 3, "suffix": ".csv"}, "heading": "time_s,leader_0,leader_1,leader_2,leader_3,follower_0,follower_1,follower_2,follower_3,voltage_0,voltage_1,voltage_2,voltage_3,state", "timeDigits": 6, "quantities": [["leader", 6], ["follower", 6], ["voltage", 3]]} as const;
+export const EPISODE = new RegExp("^(?:episode_([0-9]{3,9})\\b.*\\.csv)");
 
 export const LONGEST_TEXT = 4194304;
 export const DEEPEST_LEVEL = 24;

@@ -3,11 +3,11 @@
 import { button, el, select, setText, tableHead } from "../../parts/dom";
 import { themeChanged } from "../../parts/theme";
 import type { View } from "../view";
-import { logText } from "../../files/log";
 import { JOINT_NAMES, QUANTITIES, QUANTITY_TITLES, TICKS_A_SECOND } from "../../session/samples";
 import type { Session } from "../../session/session";
 import { Charts } from "./charts";
-import { DOWNLOADS, type Keeper } from "./keep";
+import { EpisodesPanel } from "./episodes";
+import { DOWNLOADS, keepLog, type Keeper } from "./keep";
 import { MeasuresTable } from "./measures_table";
 import { StatePanel } from "./state_panel";
 import { moveByKey, timeButtons } from "./time_buttons";
@@ -28,6 +28,7 @@ export class LiveView implements View {
   private readonly moment = el("th", { attrs: { scope: "col" } }, "joint");
   private readonly measures: MeasuresTable;
   private readonly trigger: TriggerPanel;
+  private readonly episodes: EpisodesPanel;
   private readonly record: HTMLButtonElement;
   private recordedFrom: number | null = null; // sample
 
@@ -37,11 +38,12 @@ export class LiveView implements View {
     this.charts = new Charts([{ samples: session.samples, shade: (shades, joint) => shades.joints[joint]! }], this.window);
     this.measures = new MeasuresTable(session.samples);
     this.trigger = new TriggerPanel(session, this.window);
+    this.episodes = new EpisodesPanel(session, keeper);
     this.span = select("Span shown", SPANS_S.map((s) => [String(s), s < 60 ? `${s} s` : `${s / 60} min`] as const),
       (seconds) => this.window.setSpan(Number(seconds) * TICKS_A_SECOND));
     this.element = el("div", { class: "live with-side" },
       el("div", { class: "live-main" }, this.tools(), this.charts.element, this.table()),
-      el("aside", { class: "side" }, new StatePanel(session).element, this.measures.element, this.trigger.element));
+      el("aside", { class: "side" }, this.episodes.element, new StatePanel(session).element, this.measures.element, this.trigger.element));
     this.window.changed.on(() => this.showWindow());
     themeChanged.on(() => this.charts.rebuild());
     this.showWindow();
@@ -95,15 +97,13 @@ export class LiveView implements View {
     setText(this.record, from === null ? "End recording" : "Record");
     this.record.setAttribute("aria-pressed", String(from === null));
     if (from === null) return;
-    if (from < samples.first) this.session.tell("This page keeps the last ten minutes: the log begins with them.", "info");
-    if (samples.end > from) void this.session.attempt(() => this.keep("recording", Math.max(from, samples.first), samples.end));
+    if (samples.end > from) void this.session.attempt(() => this.keep("recording", from, samples.end));
   }
 
   private async keep(name: string, from: number, to: number): Promise<void> {
-    const { samples, hello } = this.session;
-    const begin = (samples.timeOf(from) / TICKS_A_SECOND).toFixed(0);
-    const text = logText(samples, from, to, { hello, raw: await this.session.readParameters() });
-    this.session.tell(await this.keeper.keep(`${name}-${begin}s.csv`, text), "info");
+    const { samples } = this.session;
+    const begin = (samples.timeOf(Math.max(from, samples.first)) / TICKS_A_SECOND).toFixed(0);
+    await keepLog(this.session, this.keeper, `${name}-${begin}s.csv`, from, to);
   }
 
   enter(): void {
@@ -112,6 +112,7 @@ export class LiveView implements View {
 
   frame(): void {
     this.trigger.look();
+    this.episodes.look();
     this.charts.draw();
     this.showValues();
     this.measures.refresh();
@@ -134,8 +135,10 @@ export class LiveView implements View {
   }
 
   key(event: KeyboardEvent): boolean {
-    if (event.key !== "p") return moveByKey(this.window, event.key);
-    this.window.toggle();
+    if (event.key === "p") this.window.toggle();
+    else if (event.key === "r") this.episodes.beginOrEnd();
+    else if (event.key === "d") this.episodes.discard();
+    else return moveByKey(this.window, event.key);
     return true;
   }
 }
