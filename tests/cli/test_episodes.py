@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import contextlib
 import io
 import json
 import os
 import re
 import select
+import sys
 import termios
 from pathlib import Path
 
@@ -21,13 +23,6 @@ from tests.board.fake_board import FakeBoard
 
 TASK = 'Stapel die Würfel, "klein" auf groß'
 RIGHT, LEFT, ESC = b"\x1b[C", b"\x1b[D", b"\x1b"
-
-
-class Screen(io.StringIO):
-    """A terminal that shows."""
-
-    def isatty(self) -> bool:
-        return True
 
 
 class BoardWithPerson(FakeBoard):
@@ -46,11 +41,23 @@ class BoardWithPerson(FakeBoard):
             select.select([self._typed], [], [])
 
 
+def all_of(screen: int) -> str:
+    """The text on a terminal whose program has ended."""
+    shown = b""
+    with contextlib.suppress(OSError):
+        while data := os.read(screen, 4096):
+            shown += data
+    os.close(screen)
+    return shown.decode()
+
+
 def test_keys_begin_end_and_discard_and_the_terminal_is_as_before(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     keyboard, terminal = os.openpty()
-    screen, folder = Screen(), tmp_path / "cubes"
+    screen, shows = os.openpty()
+    folder = Path("cubes")
+    monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(system, "in_foreground", lambda: True)
     monkeypatch.setenv("COLUMNS", "80")
     monkeypatch.setenv("LINES", "24")
@@ -58,12 +65,13 @@ def test_keys_begin_end_and_discard_and_the_terminal_is_as_before(
     keys = [b"x", b"\n", b" ", RIGHT, LEFT, b" ", b"\x7f", b"\n", RIGHT, b"d", b" ", b"\n", b"\x1b[A", ESC]
     with open(terminal, encoding="utf-8") as typed, BoardWithPerson(keyboard, typed, keys) as board:
         monkeypatch.setattr("sys.stdin", typed)
-        monkeypatch.setattr("sys.stderr", screen)
+        monkeypatch.setattr("sys.stderr", open(shows, "w", encoding="utf-8"))  # noqa: SIM115 (closed below)
         before = termios.tcgetattr(typed)
         arguments = ["--task", TASK, "--out", str(folder), "--enable", "--port", board.port, "--json"]
         assert entry.run(["record", "--episodes", "5", *arguments]) == 0
         assert termios.tcgetattr(typed) == before
         assert (board.keys, board.state) == ([], State.DISABLED)
+        sys.stderr.close()
     os.close(keyboard)
     answer = json.loads(capsys.readouterr().out)
     assert [Path(one["log"]).name for one in answer["episodes"]] == ["episode_000.csv", "episode_001.csv"]
@@ -73,9 +81,12 @@ def test_keys_begin_end_and_discard_and_the_terminal_is_as_before(
         log = read_log(one["log"])
         assert (log.origin.task, len(log.time)) == (TASK, one["samples"])
         assert one["duration_s"] == pytest.approx(0.1, abs=0.005)
-    shown = [re.sub(r"\x1b\[[0-9;?]*[A-Za-z]", "", line) for line in re.split(r"[\r\n]+", screen.getvalue())]
+    lines = re.split(r"[\r\n]+", all_of(screen))
+    shown = [re.sub(r"\x1b\[[0-9;?]*[A-Za-z]", "", line) for line in lines]
     assert max(map(len, shown)) <= 80
-    assert [" ".join(shown).count(word) for word in (" kept.", " discarded.")] == [3, 3]
+    kept, discarded = ([line for line in shown if line.endswith(word)] for word in ("s, kept.", ": discarded."))
+    assert (len(kept), len(discarded)) == (3, 3)
+    assert all(line.startswith("cubes/episode_00") for line in kept + discarded), "each has a line of its own"
     steps = [
         PersonAtKeys(str).step(name, running)
         for name, running in (("episode_000.csv", True), ("episode_000.csv", False), ("", False))

@@ -8,7 +8,10 @@ import sys
 from collections import deque
 from collections.abc import Callable, Iterator
 
+import click
+
 from greywhale.base import system
+from greywhale.base.errors import printable
 from greywhale.board.episodes import Person, Wish
 from greywhale.cli import output
 
@@ -35,7 +38,7 @@ class PersonAtKeys(Person):
         return self._wishes.popleft() if self._wishes else None
 
     def tell(self, sentence: str) -> None:
-        output.tell(sentence)
+        click.echo(printable(sentence), file=sys.stderr)  # which is above the running step while that is shown
 
     def step(self, name: str, running: bool) -> str:
         if running:
