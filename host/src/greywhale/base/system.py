@@ -210,23 +210,23 @@ def pressed_keys(terminal: TextIO) -> Iterator[Callable[[], str]]:
     forget_typed(terminal)
     if sys.platform == "win32":
         yield lambda: "".join(iter(lambda: msvcrt.getwch() if msvcrt.kbhit() else "", ""))
-        return
+    else:
 
-    def read() -> str:
-        if not has_typed(terminal, wait=False) or not in_foreground():
-            return ""
+        def read() -> str:
+            if not has_typed(terminal, wait=False) or not in_foreground():
+                return ""
+            try:
+                return os.read(terminal.fileno(), 64).decode("utf-8", "replace") or "\x04"
+            except OSError:  # it was closed
+                return "\x04"
+
+        before = termios.tcgetattr(terminal)
+        tty.setcbreak(terminal, termios.TCSADRAIN)
         try:
-            return os.read(terminal.fileno(), 64).decode("utf-8", "replace") or "\x04"
-        except OSError:  # it was closed
-            return "\x04"
-
-    before = termios.tcgetattr(terminal)
-    tty.setcbreak(terminal, termios.TCSADRAIN)
-    try:
-        yield read
-    finally:
-        with contextlib.suppress(termios.error):
-            termios.tcsetattr(terminal, termios.TCSADRAIN, before)
+            yield read
+        finally:
+            with contextlib.suppress(termios.error):
+                termios.tcsetattr(terminal, termios.TCSADRAIN, before)
 
 
 def readable(descriptors: list[int], pause_s: float | None) -> set[int]:

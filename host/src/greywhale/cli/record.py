@@ -88,7 +88,7 @@ class RecordExciteAnswer(OnPort, LedRecordingFacts, Saved):
 
 
 @click.command("record")
-@option("--out", "-o", type=FILE, default=USUAL_LOG, help="The log; with --episodes the folder.  [there: episodes]")
+@option("--out", "-o", type=FILE, default=USUAL_LOG, help="The log.")
 @option("--seconds", "-s", type=float, help="Length, by the board's clock.  [default: 10; with --excite: 20]")
 @option("--every", type=int, default=1, help="One sample every so many ticks of 1 ms.")
 @option("--enable", is_flag=True, help="Turn the motors on: the follower follows while the log is recorded.")
@@ -104,7 +104,8 @@ class RecordExciteAnswer(OnPort, LedRecordingFacts, Saved):
     "--episodes",
     metavar="N",
     type=click.IntRange(1, MOST_EPISODES),
-    help="Record N logs into the folder --out, begun and ended by keys; without a terminal each takes --seconds.",
+    help="Record N logs into a folder, --out or else episodes, begun and ended by keys; without a terminal each takes "
+    "--seconds.",
 )
 @option("--task", metavar="TEXT", help="With --episodes: what the arm does in each, for their headers.")
 @option("--excite", is_flag=True, help="Turn the motors on and lead the arm along the motion that shows most about it.")
