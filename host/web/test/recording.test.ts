@@ -1,7 +1,10 @@
-// A recording of a leader's motion: what a log holds is led again, and what is wrong in a file is told with its line.
+// A recording of a leader's motion: what a log holds is led again, and what is wrong in a file is told with its line. An
+// episode has the next number, and its task in the form that a spreadsheet leaves whole.
 import assert from "node:assert/strict";
 import { test } from "node:test";
+import { logText, nextEpisode } from "../src/files/log";
 import { poseIn, readRecording } from "../src/files/recording";
+import { Samples } from "../src/session/samples";
 
 const HEADER = "time_s,leader_0,leader_1,leader_2,leader_3,follower_0\n";
 const read = (text: string) => readRecording({ name: "hand.csv", text }, async () => undefined);
@@ -25,4 +28,12 @@ test("whatever is wrong in a recording is named with its line", async () => {
   ] as const) {
     await assert.rejects(read(text), sentence);
   }
+});
+
+test("an episode has the next number of its folder, and its task as the host writes it", () => {
+  assert.equal(nextEpisode([]), "episode_000.csv");
+  assert.equal(nextEpisode(["episode_009-2.csv", "sub/episode_050.csv", "episode_77.csv", "log.csv", "episode_004.unfinished.csv"]), "episode_010.csv");
+  const log = logText(new Samples(64), 0, 0, { hello: null, raw: null }, { task: 'Put "\u676f",', cause: "Why." });
+  assert.ok(log.includes('\n# task: "Put \\"\\u676f\\"\\u002c"\n'), log);
+  assert.ok(log.includes("\n# recording: interrupted\n# ended_by: Why.\n"));
 });
