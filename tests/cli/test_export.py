@@ -78,6 +78,7 @@ def test_what_to_write_must_be_clear(tmp_path: Path, arguments: list[str], compl
     assert not out.exists()
 
 
+@pytest.mark.slow
 def test_a_fis_becomes_a_header(tmp_path: Path) -> None:
     (tmp_path / "five.fis").write_text(table(5))
     out = tmp_path / "law.h"

@@ -11,10 +11,9 @@ from hypothesis import strategies as st
 
 from greywhale.base.errors import UserError
 from greywhale.files import fis
-from greywhale.fuzzy.header_proof import prove
+from greywhale.fuzzy.header_proof import require_no_hole
 from greywhale.fuzzy.import_fis import firmware_obstacles
 from greywhale.fuzzy.table_law import from_fis
-from greywhale.fuzzy.table_twin import of_law
 from tools.support.fis_files import WILD, table, uneven
 
 GOOD = table(3)
@@ -26,7 +25,7 @@ def test_the_wild_is_read_and_the_line_is_named_that_no_header_takes(name: str) 
     found = fis.parse(change(GOOD))
     assert firmware_obstacles(found)
     with pytest.raises(UserError) as caught:
-        prove(law := from_fis(found, "wild.fis"), of_law(law))
+        require_no_hole(from_fis(found, "wild.fis"))
     assert words in caught.value.message
 
 

@@ -186,6 +186,7 @@ def test_a_rule_of_arduino_lint(rule: str) -> None:
     assert not holds(spoil(GOOD))
 
 
+@pytest.mark.slow
 def test_the_folder_is_what_was_made(tmp_path: Path) -> None:
     """LS002, LS003: the folder's name; LS005: no link in it. Written anew, it is the same; another folder is kept."""
     folder = tmp_path / NAME

@@ -72,16 +72,14 @@ def command(
 
 def _describe(fis: fis_file.Fis, path: str) -> tuple[FisAnswer, str]:
     from greywhale.base.errors import UserError
-    from greywhale.fuzzy.header_proof import prove
+    from greywhale.fuzzy.header_proof import require_no_hole
     from greywhale.fuzzy.import_fis import firmware_obstacles
     from greywhale.fuzzy.table_law import from_fis, obstacles
-    from greywhale.fuzzy.table_twin import of_law
 
     not_in_a_header = obstacles(fis)
     if not not_in_a_header:
         try:
-            law = from_fis(fis, path)
-            prove(law, of_law(law))
+            require_no_hole(from_fis(fis, path))
         except UserError as error:
             not_in_a_header = [error.message.removeprefix(f"{path}: ").removesuffix(".")]
     answer: FisAnswer = {

@@ -20,6 +20,13 @@ from greywhale.fuzzy.table_twin import END, Flank, IntegerLaw, IntegerSet, Integ
 VECTORS = 64
 FLASH_OF = {"set": 24, "shape": 22, "vector": 6}  # bytes; vectors are dropped where self_test() is not called
 OUTPUT_END = 1.25  # where the range of a controller's output ends: export_fis draws it so
+# Words that C++ and Arduino's core have for themselves.
+TAKEN = {
+    *("auto", "bool", "char", "class", "const", "default", "delete", "double", "enum", "explicit", "extern", "float"),
+    *("friend", "inline", "int", "long", "mutable", "namespace", "new", "operator", "private", "protected", "public"),
+    *("register", "short", "signed", "static", "std", "struct", "switch", "template", "this", "typedef", "union"),
+    *("unsigned", "using", "virtual", "void", "volatile", "while", "main", "min", "max", "abs", "bit", "round"),
+}
 CLIPPED = """\
 // What lies below a height.
 inline Sum below(const Shape& shape, uint16_t height) {
@@ -112,12 +119,12 @@ def make_header(
 def name_of(file: str) -> str:
     """The namespace of a header of this name."""
     name = re.sub(r"\W+", "_", file.rsplit("/", 1)[-1].removesuffix(".h"), flags=re.ASCII).strip("_").lower()
-    return name if name and not name[0].isdigit() else f"law_{name}".rstrip("_")
+    return f"law_{name}".rstrip("_") if not name or name[0].isdigit() or name in TAKEN else name
 
 
 def _plain(text: str) -> str:
-    """Text for one line of comment, whatever a file calls itself."""
-    return re.sub(r"[^\x20-\x7e]|\\$", "?", text)[:80].rstrip("\\")
+    """Text for one line of comment, whatever a file calls itself: nothing that would join it with the next line."""
+    return re.sub(r"[^\x20-\x3e\x40-\x5b\x5d-\x7e]", "_", text)[:80]
 
 
 def _range(axis: Axis) -> str:

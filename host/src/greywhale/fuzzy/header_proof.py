@@ -51,6 +51,11 @@ def prove(law: TableLaw, numbers: IntegerLaw, limits: HeaderLimits = HEADER_LIMI
     return Proof(least / FULL, bound, largest, at, searched)
 
 
+def require_no_hole(law: TableLaw, limits: HeaderLimits = HEADER_LIMITS) -> None:
+    """The part of `prove` that refuses."""
+    _least_height(law, [twin.memberships(sets, PLACES) for sets in twin.of_law(law).inputs], limits)
+
+
 def exact_u(law: TableLaw, e: Ints, ce: Ints) -> Floats:
     """The exact centroid for places e and ce, in LSB, but for a double's bits."""
     of_e, of_ce = (twin.axis_heights(axis.scaled(), x / END) for axis, x in zip(law.inputs, (e, ce), strict=True))
