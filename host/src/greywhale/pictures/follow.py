@@ -38,6 +38,8 @@ _LEADERS = ("--", ":", "-.", "-")
 _OVER = 3.0  # of the orders in which lines are drawn
 # A voltage's course is its mean over this time; what potentiometers' noise adds is drawn faintly behind it.
 _MEAN_S, _FAINT = 0.025, 0.3
+# Rows that are averaged at once, so that a log of an hour needs little memory.
+_PART = 1 << 16
 
 
 @dataclass(frozen=True)
@@ -202,9 +204,11 @@ def _average(time: Floats, voltage: Floats) -> Floats:
     """The running mean; of fewer samples at both ends."""
     half = int(_MEAN_S / 2.0 * (len(time) - 1) / (time[-1] - time[0])) if len(time) > 1 else 0
     sums = np.concatenate([[0.0], np.cumsum(voltage)])
-    first = np.maximum(np.arange(len(voltage)) - half, 0)
-    last = np.minimum(np.arange(len(voltage)) + half + 1, len(voltage))
-    mean: Floats = (sums[last] - sums[first]) / (last - first)
+    mean = np.empty(len(voltage))
+    for begin in range(0, len(voltage), _PART):
+        rows = np.arange(begin, min(begin + _PART, len(voltage)))
+        first, last = np.maximum(rows - half, 0), np.minimum(rows + half + 1, len(voltage))
+        mean[rows] = (sums[last] - sums[first]) / (last - first)
     return mean
 
 
