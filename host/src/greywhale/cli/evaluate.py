@@ -120,7 +120,7 @@ def command(
     parts = [part for one in zip(read, evaluations, warnings, strict=True) for part in _tell(*one)]
     answer: EvaluateAnswer = {"logs": results}
     if picture is not None:
-        _draw(picture, read)
+        _draw(picture, read, evaluations)
         answer["picture"] = str(picture)
         parts.append(Sentences([f"Picture: {picture}"]))
     followed = [log.name for log, evaluation in zip(read, evaluations, strict=True) if evaluation.following]
@@ -149,13 +149,15 @@ def _remarks(log: Log) -> list[str]:
     return [*log.remarks, *(f"{log.name}: {sentence}." for sentence in tell_powerless(log))]
 
 
-def _draw(picture: Path, logs: list[Log]) -> None:
+def _draw(picture: Path, logs: list[Log], evaluations: list[Evaluation]) -> None:
     # Matplotlib takes a second to import, and most evaluations draw nothing.
     from greywhale.pictures.follow import draw_following, trace
     from greywhale.pictures.names import distinct_names
 
     names = distinct_names([log.name for log in logs])
-    draw_following(picture, [trace(*one) for one in zip(logs, names, strict=True)], "Leader and follower")
+    each = zip(logs, names, evaluations, strict=True)
+    traces = [trace(log, name, measured=measures) for log, name, measures in each]
+    draw_following(picture, traces, "Leader and follower")
 
 
 def _tell(log: Log, evaluation: Evaluation, warnings: list[str]) -> Iterator[Part]:

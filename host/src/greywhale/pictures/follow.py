@@ -17,7 +17,7 @@ from greywhale.base.errors import BadUsage
 from greywhale.base.types import Floats
 from greywhale.files.log import Log
 from greywhale.files.log.driven import following_rows
-from greywhale.measure import evaluate
+from greywhale.measure import Evaluation, evaluate
 from greywhale.pictures import looks
 from greywhale.pictures.kinds import kind_of
 from greywhale.pictures.page import JOINTS, WIDE, headline, leave, legend_below, save, style
@@ -56,10 +56,11 @@ class Trace:
     joints: Joints = ALL  # in use
 
 
-def trace(log: Log, label: str, supply_v: float | None = None) -> Trace:
+def trace(log: Log, label: str, supply_v: float | None = None, measured: Evaluation | None = None) -> Trace:
     """The part of a log in which the motors followed (all of it if they never did).
 
     `supply_v` is the motors' supply, where the log may not tell it by its parameters, or by the CRC of the defaults.
+    `measured` are the log's measures, where they are known.
     """
     table = log.origin.table
     if table is None and log.origin.param_crc == ParameterTable.defaults().crc:
@@ -69,10 +70,10 @@ def trace(log: Log, label: str, supply_v: float | None = None) -> Trace:
     following = following_rows(log)
     part = slice(None) if following.all() else following  # without a copy of all that there is
     time = log.time[part]
-    mse = tuple(joint.mse for joint in evaluate(log).joints)
+    mse = tuple(joint.mse for joint in (measured or evaluate(log)).joints)
     voltage = log.voltage[part] if log.voltage.shape[1] else None
-    measured = log.leader[part], log.follower[part]
-    return Trace(label, time - time[0], *measured, mse, voltage, supply_v, log.joints_in_use)
+    angles = log.leader[part], log.follower[part]
+    return Trace(label, time - time[0], *angles, mse, voltage, supply_v, log.joints_in_use)
 
 
 def draw_following(path: str | Path, traces: Sequence[Trace], title: str) -> None:
@@ -163,7 +164,7 @@ def _limits(traces: Sequence[Trace]) -> dict[str, float]:
         if one.supply_v is not None and one.voltage is not None:
             limits[f"voltage limit, {one.supply_v:g} V"] = one.supply_v
         elif one.voltage is not None:
-            largest = max(largest, float(np.max(np.abs(one.voltage), initial=0.0)))
+            largest = max(largest, float(np.max(one.voltage, initial=0.0)), -float(np.min(one.voltage, initial=0.0)))
     return limits | (
         {f"largest voltage, {largest:.1f} V": largest} if largest > max(limits.values(), default=0.0) else {}
     )
