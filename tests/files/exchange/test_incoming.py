@@ -75,9 +75,11 @@ def test_a_joint_that_bam_has_comes_back_with_its_numbers(path: Path) -> None:
 
 
 def test_bams_own_recording(path: Path) -> None:
-    """As its record.py writes one of a Dynamixel: a load in thousandths of the supply that it reads beside it."""
+    """As its record.py writes one of a Dynamixel: a load in thousandths of the supply that it reads beside it, below 0
+    as 16 bits without a sign.
+    """
     entries = [
-        {"position": 0.1 * row, "speed": 0.0, "load": 20 * row, "input_volts": 7.3, "temp": 28}
+        {"position": 0.1 * row, "speed": 0.0, "load": -20 * row % 65536, "input_volts": 7.3, "temp": 28}
         | {"timestamp": 0.0035 + 0.0052 * row, "goal_position": 0.2, "torque_enable": row < 3}
         for row in range(5)
     ]
@@ -85,10 +87,21 @@ def test_bams_own_recording(path: Path) -> None:
     path.with_suffix(".json").write_text(json.dumps(head | {"entries": entries}))
     assert bring(path.with_suffix(".json"), "bam", joint=1) == Imported(5, (1,), ())
     log = read_log(path.with_name("new.csv"))
-    np.testing.assert_allclose(log.voltage[:, 1], 0.146 * np.arange(5), atol=5e-4)
+    np.testing.assert_allclose(log.voltage[:, 1], -0.146 * np.arange(5), atol=5e-4)
     np.testing.assert_allclose(log.time, 0.0035 + 0.0052 * np.arange(5), atol=5e-7)
     np.testing.assert_allclose(log.follower[:, 1], 0.1 * np.arange(5))
     assert log.state.tolist() == ["following"] * 3 + ["disabled"] * 2
+
+
+def test_a_load_that_was_interpolated_across_its_wrap_is_refused(path: Path) -> None:
+    """As in BAM's processed recordings of such motors: no number of it can be trusted."""
+    entries = [
+        {"position": 0.0, "load": load, "input_volts": 7.3, "timestamp": 0.1 * row, "goal_position": 0.0}
+        for row, load in enumerate((3, 32769.5, 65535))
+    ]
+    path.with_suffix(".json").write_text(json.dumps({"entries": entries}))
+    with pytest.raises(UserError, match="row 2, column volts: voltage_0 would be 239.* beyond 33 V"):
+        bring(path.with_suffix(".json"), "bam")
 
 
 MAP = ("time_s=t,ms", "leader_0=goal,deg", "follower_0=q1,deg,-1,12.5", "voltage_0=u,mV")

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from greywhale.base.errors import BadUsage, UserError, cut, os_reason
 from greywhale.base.formats import csv_dialect
 from greywhale.base.formats.whole import refuse_devices
+from greywhale.base.types import Floats
 from greywhale.files.exchange import bam, mat
 from greywhale.files.exchange.columns import STATE, TIME, Rule
 from greywhale.files.exchange.formats import import_extra
@@ -67,7 +68,7 @@ def _read_bam(path: Path, joint: int | None) -> Source:
     keys = [key for key in entries[0] if all(isinstance(entry.get(key), int | float) for entry in entries)]
     columns: Columns = {key: np.array([entry[key] for entry in entries], dtype=np.float64) for key in keys}
     if {"load", "input_volts"} <= columns.keys():
-        columns["volts"] = columns["load"] / bam.FULL_LOAD * columns["input_volts"]
+        columns["volts"] = _signed(columns["load"]) / bam.FULL_LOAD * columns["input_volts"]
     if "torque_enable" in columns:
         columns["powered"] = np.where(columns["torque_enable"] > 0.0, "following", "disabled")
     place = joint if joint is not None else int(data.get(bam.JOINT, 0))
@@ -75,6 +76,14 @@ def _read_bam(path: Path, joint: int | None) -> Source:
     usual = {name if name == TIME else f"{name}_{place}": Rule(source) for name, source in sources.items()}
     usual[TIME] = Rule("timestamp", offset=float(data.get(bam.START, 0.0)))
     return _held(columns, {}, usual | {STATE: Rule("powered")})
+
+
+def _signed(load: Floats) -> Floats:
+    """Loads with their sign: recordings of XL330 motors hold negative ones as 16 bits without a sign. What BAM made of
+    these by interpolation cannot be mended.
+    """
+    wrapped = load >= 1 << 15
+    return np.where(wrapped, load - (1 << 16), load) if wrapped.any() and (load % 1.0 == 0.0).all() else load
 
 
 def _read_csv(path: Path, joint: int | None) -> Source:
