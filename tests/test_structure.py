@@ -19,7 +19,7 @@ PAPER = ROOT / "studies" / "paper"
 # The rooms of the package in the order in which they stand on each other: each imports only rooms before it.
 ROOMS = [
     *("base", "protocol", "arm", "files", "fuzzy", "measure", "loop", "board", "pictures"),
-    *("optimise", "identify", "tune", "commission", "adapt", "dashboard", "cli"),
+    *("optimise", "identify", "observe", "tune", "commission", "adapt", "dashboard", "cli"),
 ]
 # Of these the paper needs no more.
 UNKNOWN_TO_THE_PAPER = {"board", "commission", "adapt", "dashboard"}

@@ -1,5 +1,5 @@
 # The library greywhale_core: all of greywhale._native that knows no Python. It holds the arm, the controller core, the closed loop,
-# what a candidate costs, the windows, the ideal law and the rules of a calibration. CMakeLists.txt makes the Python module of it; the
+# what a candidate costs, the windows, the ideal law, outside torques and the rules of a calibration. CMakeLists.txt makes the Python module of it; the
 # tests build it for another processor.
 get_filename_component(REPOSITORY ${CMAKE_CURRENT_LIST_DIR}/../.. ABSOLUTE)
 set(NATIVE ${CMAKE_CURRENT_LIST_DIR})
@@ -18,7 +18,8 @@ if(APPLE AND CMAKE_OSX_ARCHITECTURES)
 endif()
 
 file(GLOB CORE_SOURCES CONFIGURE_DEPENDS ${REPOSITORY}/sim/arm/*.cpp ${REPOSITORY}/firmware/lib/fuzzy_pdi/src/*.cpp
-  ${NATIVE}/calibrate/*.cpp ${NATIVE}/closed_loop/*.cpp ${NATIVE}/ideal/*.cpp ${NATIVE}/score/*.cpp ${NATIVE}/windows/*.cpp)
+  ${NATIVE}/calibrate/*.cpp ${NATIVE}/closed_loop/*.cpp ${NATIVE}/ideal/*.cpp
+  ${NATIVE}/observe/*.cpp ${NATIVE}/score/*.cpp ${NATIVE}/windows/*.cpp)
 list(FILTER CORE_SOURCES EXCLUDE REGEX "/kernel\\.cpp$")
 add_library(greywhale_core STATIC ${CORE_SOURCES})
 

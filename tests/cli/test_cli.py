@@ -102,6 +102,7 @@ def test_the_program_starts_no_threads_for_linear_algebra() -> None:
         (["record", "--poses", "3", "--seed", "4"], "--seed --excite"),
         (["record", "--arm", "default"], "--arm --excite --poses"),
         (["evaluate", "log.csv", "--arm", "default"], "--arm --repeatability"),
+        (["evaluate", "log.csv", "--repeatability", "--model", "m.toml"], "--model --repeatability"),
         (["record", "--excite", "--budget", "1000000"], "budget 1000000 100000"),
         (["compare", "--jobs", "100000"], "100000 1024"),
         (["reproduce", "--seeds", "1001"], "seeds 1001 1000"),

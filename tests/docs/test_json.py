@@ -40,6 +40,7 @@ CALLS = {
         "log.csv",
         "log.csv before.csv --picture both.svg",
         "--repeatability plain.csv loaded.csv --arm arm.toml",
+        "log.csv --model model.toml",
     ],
     "identify": ["fit.csv --validate second.csv"],
     "tune": ["model.toml", "model.toml --tables"],

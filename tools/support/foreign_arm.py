@@ -145,7 +145,7 @@ class MuJoCoPlant:
         self._engine: Any = mujoco
         self._half = 0.5 * arm.play
         self._gears, self._drivers = arm.gears, arm.drivers
-        self._shown = np.zeros(JOINTS)
+        self._shown, self._pushed = np.zeros(JOINTS), np.zeros(JOINTS)
         self._load(arm.parameters)
 
     def _load(self, parameters: ArmParameters) -> None:
@@ -166,11 +166,16 @@ class MuJoCoPlant:
         self._data.qvel[:] = 0.0
         self._shown = angles.copy()
 
+    def push(self, torques: Floats) -> None:
+        """Push on the joints, N m (4,), from now on."""
+        self._pushed = torques.copy()
+
     def step(self, voltages: Floats, dt: float) -> Floats:
         data, gears = self._data, self._gears
         if self._drivers is not None:
             voltages = self._drivers.volts(voltages, data.qpos[-JOINTS:])  # of the motors, where they are apart
         data.ctrl[:] = voltages
+        data.qfrc_applied[:JOINTS] = self._pushed
         if gears is None:
             self._model.opt.timestep = dt
             self._engine.mj_step(self._model, data)
@@ -178,6 +183,7 @@ class MuJoCoPlant:
             self._model.opt.timestep = dt / SUBSTEPS
             for _ in range(SUBSTEPS):
                 data.qfrc_applied[:] = gears.pushes(data.qpos, data.qvel)
+                data.qfrc_applied[:JOINTS] += self._pushed
                 self._engine.mj_step(self._model, data)
         # The joint drags the wiper along at either end of the play.
         angles = data.qpos[:JOINTS]

@@ -13,5 +13,6 @@ void bind_elementary(nanobind::module_& m);
 void bind_fuzzy(nanobind::module_& m);
 void bind_ideal(nanobind::module_& m);
 void bind_identify(nanobind::module_& m);
+void bind_observe(nanobind::module_& m);
 void bind_rigid_body(nanobind::module_& m);
 void bind_score(nanobind::module_& m);

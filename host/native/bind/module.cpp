@@ -14,6 +14,7 @@ NB_MODULE(_native, m) {
   bind_fuzzy(m);
   bind_ideal(m);
   bind_identify(m);
+  bind_observe(m);
   bind_rigid_body(m);
   bind_score(m);
 }

@@ -11,7 +11,7 @@ import click
 from greywhale.base.errors import BadUsage, counted
 from greywhale.base.formats.whole import refuse_inputs
 from greywhale.base.telling import Column, Motions, Part, Row, Sentences, Step, Table, Telling
-from greywhale.cli import completion
+from greywhale.cli import completion, torque
 from greywhale.cli.output import FILE, json_option, option, overwrite_option, show
 from greywhale.cli.repeatability import Measured, RepeatabilityAnswer, draw
 from greywhale.files.arm import load_arm
@@ -22,6 +22,8 @@ from greywhale.files.log.driven import tell_powerless
 from greywhale.files.outputs import require_new
 from greywhale.measure import Evaluation, evaluate
 from greywhale.measure.evaluate import EvaluationFacts, JointMeasures
+from greywhale.observe import ExternalTorque, estimate_external_torque
+from greywhale.observe.torque import TorqueFacts
 from greywhale.pictures.kinds import kind_of
 from greywhale.protocol.joints import named, unused
 
@@ -46,6 +48,7 @@ class LogFacts(EvaluationFacts):
     check: Check  # shortened: rows are missing; changed: rows or header are others; unchecked: it has no check
     gaps: list[Gap]  # where more than ten samples in a row are missing
     remarks: list[str]  # check, gaps and missing voltages in sentences
+    external_torque: TorqueFacts | None  # null without --model
 
 
 class EvaluateAnswer(TypedDict):
@@ -63,6 +66,11 @@ class EvaluateAnswer(TypedDict):
     shell_complete=completion.arms,
     help="With --repeatability: your arm.toml or a model.toml, for the tip and for play that is known.",
 )
+@option(
+    "--model",
+    shell_complete=completion.arms,
+    help="A model.toml of `greywhale identify`: tell the torques that acted from outside, and contacts.",
+)
 @overwrite_option
 @json_option(EvaluateAnswer | RepeatabilityAnswer)
 def command(
@@ -70,6 +78,7 @@ def command(
     picture: Path | None,
     repeatability: bool,
     arm_file: str | None,
+    model: str | None,
     overwrite: bool,
     as_json: bool,
 ) -> None:
@@ -88,21 +97,30 @@ def command(
     and again, coming from either side. Per joint, and with --arm at the tip: the repeatability RP and accuracy AP of
     ISO 9283, and the lost motion, its multidirectional variation vAP. Several logs, such as without and with a load,
     are also compared with the first, pose by pose.
+
+    With --model also per joint the torque that acted from outside, where it can be told: not at rest, where friction
+    holds, not in the gap of a gear, and not just after a turn. No sensor is needed; `known to` is half of the interval
+    that holds it in nine cases of ten.
     """
-    refuse_inputs(picture, *logs, arm_file)
+    refuse_inputs(picture, *logs, arm_file, model)
     require_new(overwrite, picture)
     if picture is not None:
         kind_of(picture)
     if repeatability:
+        if model is not None:
+            raise BadUsage("--model tells torques, and --repeatability places; leave one of them out.")
         _measure_visits(logs, picture, arm_file, as_json)
         return
     if arm_file is not None:
         raise BadUsage("--arm belongs to --repeatability; add that, or leave it out.")
+    arm = None if model is None else load_arm(model)
     read, evaluations, warnings = [], [], []
+    found: list[ExternalTorque | None] = []
     for path in logs:
         log = read_log(path)
         evaluations.append(evaluate(log))
         warnings.append(_remarks(log))
+        found.append(None if arm is None else estimate_external_torque(log, arm))
         read.append(log if picture is not None else log.without_samples())
     results: list[LogFacts] = [
         {
@@ -113,11 +131,12 @@ def command(
             "check": log.condition.check,
             "gaps": list(log.condition.gaps),
             "remarks": remarks,
+            "external_torque": None if outside is None else outside.as_dict(),
             **evaluation.as_dict(),
         }
-        for log, evaluation, remarks in zip(read, evaluations, warnings, strict=True)
+        for log, evaluation, remarks, outside in zip(read, evaluations, warnings, found, strict=True)
     ]
-    parts = [part for one in zip(read, evaluations, warnings, strict=True) for part in _tell(*one)]
+    parts = [part for one in zip(read, evaluations, warnings, found, strict=True) for part in _tell(*one)]
     answer: EvaluateAnswer = {"logs": results}
     if picture is not None:
         _draw(picture, read, evaluations)
@@ -160,7 +179,7 @@ def _draw(picture: Path, logs: list[Log], evaluations: list[Evaluation]) -> None
     draw_following(picture, traces, "Leader and follower")
 
 
-def _tell(log: Log, evaluation: Evaluation, warnings: list[str]) -> Iterator[Part]:
+def _tell(log: Log, evaluation: Evaluation, warnings: list[str], outside: ExternalTorque | None) -> Iterator[Part]:
     notes = [f"{counted(evaluation.samples, 'sample')}, {_covered(evaluation)}"]
     if log.dropped:
         notes.append(f"{log.dropped} dropped")
@@ -179,6 +198,8 @@ def _tell(log: Log, evaluation: Evaluation, warnings: list[str]) -> Iterator[Par
     if idle:
         lines.append(f"{named(idle).capitalize()} {'is' if len(idle) == 1 else 'are'} not in use.")
     yield Sentences(lines, near=True)
+    if outside is not None:
+        yield from torque.tell(outside, evaluation.joints_in_use)
     lost = [
         f"Joint {number} does not follow its leader at all: check its potentiometers, its motor and their signs."
         for number, joint in enumerate(evaluation.joints)

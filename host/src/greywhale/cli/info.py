@@ -15,7 +15,9 @@ from greywhale.board.doctor.board import EEPROM_WRITES
 from greywhale.board.pots import POTS, PotReadings, read_pots
 from greywhale.board.refusal import fault_text, pot_name
 from greywhale.board.upload import read_parameters
+from greywhale.cli import completion
 from greywhale.cli.output import OnPort, json_option, option, port_option, show
+from greywhale.files.arm import load_arm
 from greywhale.protocol import schema
 from greywhale.protocol.ports import choose_port
 
@@ -58,9 +60,14 @@ class InfoAnswer(OnPort):
 @click.command("info")
 @option("--watch", is_flag=True, help="Show angles, errors, voltages and faults as they are, until Ctrl-C.")
 @option("--seconds", "-s", type=click.FloatRange(min=0.0), help="With --watch: end after so long.")
+@option(
+    "--model",
+    shell_complete=completion.arms,
+    help="With --watch: a model.toml of `greywhale identify`; show the torques that act from outside.",
+)
 @port_option
 @json_option(InfoAnswer)
-def command(watch: bool, seconds: float | None, port: str | None, as_json: bool) -> None:
+def command(watch: bool, seconds: float | None, model: str | None, port: str | None, as_json: bool) -> None:
     """Tell a board's version, state, faults and counters, and which potentiometers are broken.
 
     The board is not restarted if a greywhale had its port last, so that a fault is still there to be seen. Otherwise
@@ -72,22 +79,25 @@ def command(watch: bool, seconds: float | None, port: str | None, as_json: bool)
     if watch:
         if as_json:
             raise BadUsage("--watch goes on and on, and --json prints one object; leave one of them out.")
-        _watch(port, seconds)
+        _watch(port, seconds, model)
         return
     if seconds is not None:
         raise BadUsage("--seconds belongs to --watch; add that, or leave it out.")
+    if model is not None:
+        raise BadUsage("--model belongs to --watch; add that, or leave it out.")
     with Device(choose_port(port), restart=False) as device:
         hello, status = device.hello, device.status()
         pots = read_pots(device, read_parameters(device)) if status.state in _MOTORS_OFF else None
     show(as_json, _facts(device, hello, status, pots), _tell(device, hello, status, pots))
 
 
-def _watch(port: str | None, seconds: float | None) -> None:
+def _watch(port: str | None, seconds: float | None, model: str | None) -> None:
     # What draws on a terminal takes a moment to import.
     from greywhale.cli.watch import watch
 
+    arm = None if model is None else load_arm(model)
     with Device(choose_port(port), restart=False) as device, contextlib.suppress(KeyboardInterrupt):
-        watch(device, read_parameters(device), seconds)  # Ctrl-C is how it ends
+        watch(device, read_parameters(device), seconds, arm)  # Ctrl-C is how it ends
 
 
 def _facts(

@@ -19,22 +19,37 @@ from rich.console import Console
 from rich.live import Live
 from rich.text import Text
 
+from greywhale.arm import ArmParameters
 from greywhale.board.device import Device
 from greywhale.board.pots import FULL_SCALE, PotReadings, counts_of, pots_there
 from greywhale.board.refusal import fault_text
-from greywhale.board.stream import stream
+from greywhale.board.stream import Received, stream
+from greywhale.cli import torque
+from greywhale.observe import LiveTorque, Sight
 from greywhale.protocol import schema
 from greywhale.protocol.firmware import ANGLE_LSB, JOINTS
 from greywhale.protocol.joints import ALL, Joints
 from greywhale.protocol.table import ParameterTable
 
 SAMPLE_EVERY_TICKS = 50  # 20 samples a second
+TORQUE_EVERY_TICKS = 4  # an outside torque needs more, of which as many are shown
 WIDTH_COLUMNS = 80  # of the smallest usual terminal
 MOST_COMPLAINTS = 2  # shown; the others are counted
 _REFRESH_S = 0.1  # of the table, by this machine's clock
 _LINE_TICKS = 1000  # between two lines, by the board's
 _GROUPS = ("leader", "follower", "error", "voltage")
+TORQUES = [f"{group}_{joint}" for group in ("torque", "torque_known_to", "contact") for joint in range(JOINTS)]
 HEADING = ",".join(["time_s", "state", "fault", *(f"{group}_{joint}" for group in _GROUPS for joint in range(JOINTS))])
+
+
+@dataclass(frozen=True)
+class Torques:
+    """Outside torques of one moment (4,): N m, half widths of their intervals, what can be told, contacts."""
+
+    torque: npt.NDArray[np.float64]
+    half_width: npt.NDArray[np.float64]
+    sight: npt.NDArray[np.uint8]
+    contact: npt.NDArray[np.bool_]
 
 
 @dataclass(frozen=True)
@@ -49,6 +64,7 @@ class Look:
     fault: str  # in words with its remedy, "" for none
     lost: int  # samples so far
     joints: Joints = ALL  # in use
+    outside: Torques | None = None  # with a model
 
     @property
     def leader(self) -> npt.NDArray[np.float64]:
@@ -63,45 +79,76 @@ class Look:
         return np.array(self.sample.voltage) * schema.Sample.LSB["voltage"]
 
 
-def watch(device: Device, table: ParameterTable, seconds: float | None = None) -> None:
+def watch(
+    device: Device, table: ParameterTable, seconds: float | None = None, model: ArmParameters | None = None
+) -> None:
     """Show the board until Ctrl-C, or for `seconds` of its clock; `table` runs on it. Telemetry is off afterwards."""
     console = Console()
-    found = takewhile(lambda look: seconds is None or look.ticks <= 1000 * seconds, looks(device, table))
+    found = takewhile(lambda look: seconds is None or look.ticks <= 1000 * seconds, looks(device, table, model))
     try:
         if console.is_terminal:
             with Live(console=console, auto_refresh=False, transient=True) as live:
                 for look in _paced(found):
                     live.update(Text(as_table(look)), refresh=True)
         else:
-            click.echo(HEADING)
+            click.echo(HEADING if model is None else ",".join([HEADING, *TORQUES]))
             for look in _spaced(found):
                 click.echo(as_line(look))
     finally:
         device.telemetry(0)
 
 
-def looks(device: Device, table: ParameterTable) -> Iterator[Look]:
+def looks(device: Device, table: ParameterTable, model: ArmParameters | None = None) -> Iterator[Look]:
     """Yield a look at the board's newest sample, again and again, without end."""
-    fault, fault_words, lost = schema.Fault.NONE, "", 0
-    for one in stream(device, SAMPLE_EVERY_TICKS):
+    fault, fault_words, lost, due = schema.Fault.NONE, "", 0, 0
+    every = SAMPLE_EVERY_TICKS if model is None else TORQUE_EVERY_TICKS
+    outside = None if model is None else _Outside(model, table)
+    for one in stream(device, every):
         lost += one.lost
+        seen = None if outside is None else outside.take(one)
+        if one.elapsed < due and one.sample.fault is fault:
+            continue
+        due = one.elapsed + SAMPLE_EVERY_TICKS - every // 2
         if one.sample.fault is not fault:
             fault = one.sample.fault
             status = device.status()
             fault_words = "" if status.fault is schema.Fault.NONE else fault_text(status)
         counts = np.clip(np.rint(counts_of([one.sample], table)), 0, FULL_SCALE).astype(np.int64)
         complaints = tuple(PotReadings(counts, table["rail_counts"], pots_there(table)).complaints())
-        yield Look(device.port, one.elapsed, one.sample, counts[0], complaints, fault_words, lost, table.joints_in_use)
+        yield Look(
+            device.port, one.elapsed, one.sample, counts[0], complaints, fault_words, lost, table.joints_in_use, seen
+        )
+
+
+class _Outside:
+    """Outside torques from sample to sample."""
+
+    def __init__(self, model: ArmParameters, table: ParameterTable) -> None:
+        self._live = LiveTorque(model, table["filter_shift"], TORQUE_EVERY_TICKS / 1000)
+
+    def take(self, one: Received) -> Torques:
+        if one.sample.state is not schema.State.FOLLOWING:
+            self._live.restart()
+        angles, volts = (
+            np.array([values]) * schema.Sample.LSB[name]
+            for name, values in (("follower", one.sample.follower), ("voltage", one.sample.voltage))
+        )
+        rows = (values[0] for values in self._live.feed(np.array([one.elapsed / 1000]), angles, volts))
+        found = Torques(*rows)
+        if one.sample.state is not schema.State.FOLLOWING:
+            found.sight[:] = Sight.OFF
+        return found
 
 
 def as_table(look: Look) -> str:
     lost = f", {look.lost} samples lost" if look.lost else ""
     board = f"{look.port}, state {look.sample.state.key}, {look.sample.tick / 1000:.1f} s since its start{lost}"
+    outside, unit = ("", "") if look.outside is None else ("outside", "N m")
     lines = [
         *textwrap.wrap(board, WIDTH_COLUMNS),
         "",
-        f"{'':8}{'leader':>17}{'follower':>17}{'error':>10}{'voltage':>10}",
-        f"{'':8}{'rad':>9}{'counts':>8}{'rad':>9}{'counts':>8}{'rad':>10}{'V':>10}",
+        f"{'':8}{'leader':>17}{'follower':>17}{'error':>10}{'voltage':>10}{outside:>18}".rstrip(),
+        f"{'':8}{'rad':>9}{'counts':>8}{'rad':>9}{'counts':>8}{'rad':>10}{'V':>10}{unit:>18}".rstrip(),
     ]
     for joint in range(JOINTS):
         if joint not in look.joints:
@@ -111,6 +158,7 @@ def as_table(look: Look) -> str:
         lines.append(
             f"joint {joint} {leader:>+9.3f}{look.counts[joint]:>8}{follower:>+9.3f}{look.counts[JOINTS + joint]:>8}"
             f"{leader - follower:>+10.3f}{look.voltage[joint]:>+10.2f}"
+            f"{_outside(look, joint):>18}".rstrip()
         )
     sentences = [f"Fault: {look.fault}" if look.fault else "No fault.", *look.complaints[:MOST_COMPLAINTS]]
     if len(look.complaints) > MOST_COMPLAINTS:
@@ -119,10 +167,22 @@ def as_table(look: Look) -> str:
     return "\n".join([*lines, "", *(line for sentence in sentences for line in textwrap.wrap(sentence, WIDTH_COLUMNS))])
 
 
+def _outside(look: Look, joint: int) -> str:
+    if look.outside is None:
+        return ""
+    seen = look.outside
+    return torque.cell(seen.torque[joint], seen.half_width[joint], seen.sight[joint], bool(seen.contact[joint]))
+
+
 def as_line(look: Look) -> str:
-    """The line of a look under HEADING."""
+    """The line of a look under HEADING; a torque that cannot be told is empty."""
     angles = [*look.leader, *look.follower, *(look.leader - look.follower)]
     numbers = [*(f"{angle:.6f}" for angle in angles), *(f"{volts:.3f}" for volts in look.voltage)]
+    if (seen := look.outside) is not None:
+        for values in (seen.torque, seen.half_width):
+            told = zip(values, seen.sight, strict=True)
+            numbers += [f"{value:.3f}" if sight == Sight.TOLD else "" for value, sight in told]
+        numbers += [f"{int(one)}" for one in seen.contact]
     return ",".join([f"{look.ticks / 1000:.3f}", look.sample.state.key, look.sample.fault.key, *numbers])
 
 

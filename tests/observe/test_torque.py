@@ -1,0 +1,152 @@
+"""Outside torques: the equations against the plant, and an identified arm that somebody pushes."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from greywhale import _native
+from greywhale.arm import Arm, ArmParameters
+from greywhale.arm.plants import plant_row
+from greywhale.base.errors import UserError
+from greywhale.base.limits import numbers_in
+from greywhale.cli import entry
+from greywhale.files.arm import load_arm
+from greywhale.files.log import Log
+from greywhale.loop import human_reaches
+from greywhale.observe import ExternalTorque, Sight, estimate_external_torque
+from greywhale.observe.limits import TORQUE_LIMITS
+from tools.support.pushed_arm import OwnPlant, Push, judge, record_pushed, some_pushes
+from tools.support.recordings import record, table_of
+
+MODEL = Path(__file__).parent / "default_model.toml"  # as `greywhale identify` found the default arm in a log of 25 s
+SECONDS = 14.0
+
+
+@pytest.fixture(scope="module")
+def model() -> ArmParameters:
+    return load_arm(str(MODEL))
+
+
+@pytest.fixture(scope="module")
+def pushes() -> list[Push]:
+    return some_pushes(load_arm("default"), SECONDS, (0.25, 0.5), 3)
+
+
+@pytest.fixture(scope="module")
+def pushed(pushes: list[Push], tmp_path_factory: pytest.TempPathFactory) -> Log:
+    arm, motion = load_arm("default"), human_reaches(77, SECONDS)
+    path = tmp_path_factory.mktemp("pushed") / "log.csv"
+    return record_pushed(OwnPlant(arm, motion.angles[0], 5), arm, motion, path, table_of("before_tuning"), pushes, 5)
+
+
+@pytest.fixture(scope="module")
+def found(pushed: Log, model: ArmParameters) -> ExternalTorque:
+    return estimate_external_torque(pushed, model)
+
+
+def bare(arm: ArmParameters) -> ArmParameters:
+    """The arm without friction and gaps, in a supply that sags."""
+    data = arm.model_dump()
+    for joint in data["joint"]:
+        joint["friction"] = {}
+        joint["gear"] = {}
+    data["drive"]["supply_resistance"] = 0.2
+    return ArmParameters.model_validate(data, strict=False)
+
+
+def test_the_equations_are_the_plants() -> None:
+    """All joints turn at once, with gravity and each other's inertia; the plant knows the outside torque."""
+    arm = bare(load_arm("default"))
+    plant = Arm(arm, longest_step_s=1e-4)
+    plant.reset(np.array([0.1, 0.4, -0.3, 0.2]))
+    outside = np.array([0.2, -1.0, 0.5, 0.1])
+    time, angles, volts = np.arange(800) / 1000, np.zeros((800, 4)), np.zeros((800, 4))
+    for row, now in enumerate(time):
+        angles[row] = plant.angles
+        volts[row] = np.array([4.0, 5.0, 4.0, 5.0]) * np.sin(2 * np.pi * np.array([1.0, 0.8, 1.2, 1.5]) * now + 0.5)
+        plant.set_load(outside if now > 0.4 else np.zeros(4))
+        plant.step(volts[row], 1e-3)
+    observer = _native.TorqueObserver(plant_row(arm)[None], numbers_in(TORQUE_LIMITS), [0.0] * 4, 0.0)
+    torque, *_ = observer.feed(time, angles, volts)
+    stall = np.array([arm.actuator(joint).torque_per_volt * arm.drive.supply for joint in range(4)])
+    assert np.ptp(angles, axis=0).min() > 0.3, "every joint must move for this to say anything"
+    assert np.abs(angles).max() < 2.5, "a stop would push too"
+    assert np.abs(torque[100:400] / stall).max() < 0.01
+    assert np.abs((torque[530:] - outside) / stall).max() < 0.01
+
+
+def test_a_push_is_measured_within_a_tenth_of_the_stall_torque(
+    found: ExternalTorque, pushed: Log, pushes: list[Push]
+) -> None:
+    judged = judge(found, pushed, load_arm("default"), pushes)
+    assert min(len(one) for one in judged.error) > 100
+    assert [float(np.quantile(np.abs(one), 0.9)) for one in judged.error] == pytest.approx([0.0] * 4, abs=0.1)
+    assert np.mean(np.concatenate(judged.held)) > 0.9
+    # An interval that holds all would say nothing; of roll only that something pushes it, as its links are light.
+    assert max(float(np.median(one)) for one in judged.half_width[:3]) < 0.1
+
+
+def test_a_push_is_seen_within_50_ms(found: ExternalTorque, pushed: Log, pushes: list[Push]) -> None:
+    judged = judge(found, pushed, load_arm("default"), pushes)
+    assert np.isfinite(judged.seen).all()
+    assert np.count_nonzero(judged.seen <= 0.05) >= len(pushes) - 1
+    assert judged.false == ()
+
+
+def test_free_motion_is_no_contact(model: ArmParameters, tmp_path: Path) -> None:
+    log = record(load_arm("default"), human_reaches(78, 30.0), tmp_path / "free.csv", table_of("before_tuning"), 78)
+    free = estimate_external_torque(log, model)
+    assert free.contacts == ()
+    assert free.told.mean() > 0.08
+    assert (np.abs(free.torque) <= free.half_width)[free.told].mean() > 0.9
+
+
+def test_a_joint_at_rest_tells_nothing_that_friction_can_hold(found: ExternalTorque, model: ArmParameters) -> None:
+    resting = found.sight == Sight.RESTING
+    for joint in range(4):
+        held = model.joint[joint].friction.breakaway
+        assert (found.half_width[resting[:, joint], joint] > held).all()
+    facts = found.as_dict()["joints"][1]
+    assert facts["not_told"]["resting"] == pytest.approx(resting[:, 1].mean())
+    assert 1.0 - sum(facts["not_told"].values()) == pytest.approx(found.told[:, 1].mean())
+
+
+def test_nothing_is_told_while_motors_are_off(pushed: Log, model: ArmParameters) -> None:
+    state = pushed.state.copy()
+    state[2000:4000] = "disabled"
+    found = estimate_external_torque(replace(pushed, state=state), model)
+    assert (found.sight[2000:4000] == Sight.OFF).all()
+    assert (found.torque[2000:4000] == 0.0).all()
+    assert not found.told[4000:4040].any(), "it begins anew"
+
+
+def test_every_fourth_sample_tells_much_the_same(pushed: Log, found: ExternalTorque, model: ArmParameters) -> None:
+    columns = {name: getattr(pushed, name)[::4] for name in ("time", "leader", "follower", "voltage", "state")}
+    slow = estimate_external_torque(replace(pushed, **columns), model)
+    both = slow.told & found.told[::4]
+    assert both.sum() > 500
+    stall = [model.actuator(joint).torque_per_volt * model.drive.supply for joint in range(4)]
+    assert np.sqrt(np.mean(((slow.torque - found.torque[::4]) / stall)[both] ** 2)) < 0.05
+
+
+def test_an_arm_file_that_was_not_identified_is_refused(pushed: Log) -> None:
+    with pytest.raises(UserError, match=r"use a model\.toml of greywhale identify"):
+        estimate_external_torque(pushed, load_arm("default"))
+
+
+def test_evaluate_tells_torques_and_contacts(
+    pushed: Log, pushes: list[Push], capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert entry.run(["evaluate", pushed.name, "--model", str(MODEL)]) == 0
+    said = capsys.readouterr().out
+    assert "can be told" in said
+    assert said.count("Contact: joint") == len(pushes)
+    assert entry.run(["evaluate", pushed.name, "--model", str(MODEL), "--json"]) == 0
+    answer = json.loads(capsys.readouterr().out)["logs"][0]["external_torque"]
+    sizes = [one["torque_nm"] for one in answer["contacts"]]
+    assert [np.sign(one) for one in sizes] == [np.sign(push.torque) for push in pushes]
