@@ -196,8 +196,7 @@ double Ensemble::known_width(std::size_t i) const {
   for (const Observer& arm : arms_) spread += std::pow(arm.torque(i) - likeliest.torque(i), 2);
   spread /= static_cast<double>(std::max<std::size_t>(arms_.size() - 1, 1));
   // Beside a heavy motor light links hardly show how much a volt pushes.
-  const double scale =
-      limits_.scale_share * likeliest.torque(i) * likeliest.inertia(i) / likeliest.link_inertia(i);
+  const double scale = limits_.scale_share * likeliest.torque(i) * likeliest.inertia(i) / likeliest.link_inertia(i);
   return limits_.interval * std::hypot(std::sqrt(spread), own_deviation(likeliest, i), scale);
 }
 

@@ -57,7 +57,7 @@ class Observer {
   double torque(std::size_t i) const { return residual_[i]; }
   double speed(std::size_t i) const { return speed_[i]; }
   double angle(std::size_t i) const { return second_[i].value; }
-  double inertia(std::size_t i) const { return inertia_[i]; }  // of all that turns with the joint
+  double inertia(std::size_t i) const { return inertia_[i]; }            // of all that turns with the joint
   double link_inertia(std::size_t i) const { return link_inertia_[i]; }  // of the links alone
   // What a motor that goes with its joint passes on, and the friction that takes its share of it, N m.
   double passed(std::size_t i) const { return passed_[i]; }
@@ -86,9 +86,9 @@ class Ensemble {
 
  private:
   struct Track {
-    int direction = 0;      // of the last sure motion
-    double known_s = 0.0;   // since when it goes on
-    int side = 0;           // of the teeth that touch
+    int direction = 0;     // of the last sure motion
+    double known_s = 0.0;  // since when it goes on
+    int side = 0;          // of the teeth that touch
     double apart_rad = 0.0, apart_rad_s = 0.0;
     double unseen_rad = 0.0, unseen_rad_s = 0.0;  // what the joint may have moved within its potentiometer's play
     double beyond_s = 0.0, free_s = 0.0;
@@ -98,8 +98,9 @@ class Ensemble {
   Sight look(std::size_t i, double dt);
   bool crosses_gap(std::size_t i, double dt);
   double moving_speed(std::size_t i) const;
-  double own_deviation(const Observer& arm, std::size_t i) const;  // N m, of noise and of doubts about friction and motor
-  double known_width(std::size_t i) const;                         // half the interval's width where friction is known
+  double own_deviation(const Observer& arm,
+                       std::size_t i) const;  // N m, of noise and of doubts about friction and motor
+  double known_width(std::size_t i) const;    // half the interval's width where friction is known
   bool touches(std::size_t i, bool told) const;
   bool may_be_play(std::size_t i, double dt);
   void judge_contact(std::size_t i, double dt, Seen& seen);
