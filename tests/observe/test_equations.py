@@ -1,4 +1,4 @@
-"""The observer's equations against the plant's: what is neither motor nor gravity nor another link comes from outside."""
+"""The observer's equations against the plant's: what no motor, gravity or other link does comes from outside."""
 
 from __future__ import annotations
 

@@ -98,9 +98,9 @@ class Ensemble {
   Sight look(std::size_t i, double dt);
   bool crosses_gap(std::size_t i, double dt);
   double moving_speed(std::size_t i) const;
-  double own_deviation(const Observer& arm,
-                       std::size_t i) const;  // N m, of noise and of doubts about friction and motor
-  double known_width(std::size_t i) const;    // half the interval's width where friction is known
+  // N m, of noise and of doubts about friction and motor.
+  double own_deviation(const Observer& arm, std::size_t i) const;
+  double known_width(std::size_t i) const;  // half the interval's width where friction is known
   bool touches(std::size_t i, bool told) const;
   bool may_be_play(std::size_t i, double dt);
   void judge_contact(std::size_t i, double dt, Seen& seen);

@@ -20,7 +20,7 @@ from greywhale.arm import ArmParameters
 from greywhale.base.limits import numbers_in
 from greywhale.base.types import Floats
 from greywhale.files.log import Log
-from greywhale.files.log.driven import following_rows
+from greywhale.files.log.driven import driven_rows
 from greywhale.measure.runs import stretches
 from greywhale.observe.limits import TORQUE_LIMITS, TorqueLimits
 from greywhale.protocol.firmware import CONVERSIONS, JOINTS, TICK_S
@@ -160,7 +160,7 @@ def estimate_external_torque(log: Log, model: ArmParameters, limits: TorqueLimit
     shape = log.follower.shape
     torque, half = np.zeros(shape), np.zeros(shape)
     sight, contact = np.full(shape, Sight.OFF, dtype=np.uint8), np.zeros(shape, dtype=bool)
-    for start, stop in stretches(following_rows(log)):
+    for start, stop in stretches(driven_rows(log)):
         live.restart()
         rows = slice(start, stop)
         found = live.feed(log.time[rows], log.follower[rows], log.voltage[rows])
