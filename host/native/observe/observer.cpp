@@ -212,12 +212,16 @@ bool Ensemble::touches(std::size_t i, bool told) const {
   return std::max(ups, downs) >= limits_.contact_arms * static_cast<double>(arms_.size());
 }
 
+bool Ensemble::is_slow(std::size_t i) const {
+  return std::fabs(arms_[0].speed(i)) <= limits_.slow_spreads * moving_speed(i);
+}
+
 // A joint that turns crosses the play of its potentiometer unseen, by its motor's torque that nothing seems to take.
 bool Ensemble::may_be_play(std::size_t i, double dt) {
   const Observer& arm = arms_[0];
   Track& track = tracks_[i];
   const double play = 2.0 * limits_.play_share * arm.row().plant.joints[i].sensor.play;
-  if (play <= 0.0 || std::fabs(arm.speed(i)) > limits_.slow_spreads * moving_speed(i)) return false;
+  if (play <= 0.0 || !is_slow(i)) return false;
   track.unseen_rad_s += std::fabs(arm.torque(i)) / arm.inertia(i) * dt;
   track.unseen_rad += track.unseen_rad_s * dt;
   return track.unseen_rad < play;
@@ -230,7 +234,9 @@ void Ensemble::judge_contact(std::size_t i, double dt, Seen& seen) {
   if (!touched) track.unseen_rad = track.unseen_rad_s = 0.0;
   track.beyond_s = touched && !may_be_play(i, dt) ? track.beyond_s + dt : 0.0;
   track.free_s = touched ? 0.0 : track.free_s + dt;
-  if (track.beyond_s >= limits_.contact_s) track.contact = true;
+  const bool strikes = (seen.sight == Sight::in_gap || seen.sight == Sight::turning) && !is_slow(i) &&
+                       arms_[0].row().plant.joints[i].gear.half_gap > 0.0;
+  if (track.beyond_s >= (strikes ? limits_.strike_s : limits_.contact_s)) track.contact = true;
   if (track.free_s >= limits_.release_s) track.contact = false;
   seen.contact = track.contact;
 }

@@ -102,6 +102,7 @@ class Ensemble {
   double own_deviation(const Observer& arm, std::size_t i) const;
   double known_width(std::size_t i) const;  // half the interval's width where friction is known
   bool touches(std::size_t i, bool told) const;
+  bool is_slow(std::size_t i) const;
   bool may_be_play(std::size_t i, double dt);
   void judge_contact(std::size_t i, double dt, Seen& seen);
 

@@ -83,6 +83,7 @@ struct TorqueLimits {
   double contact_arms;
   double contact_share;
   double contact_s;
+  double strike_s;
   double release_s;
 };
 

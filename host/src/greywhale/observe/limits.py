@@ -44,6 +44,9 @@ class TorqueLimits:
     contact_arms: float = limit(0.7, "of the arms", "that could have made the log must say so")
     contact_share: float = limit(0.05, "of the stall torque", "and this much beyond them", MEASURED_ON_ARMS)
     contact_s: float = limit(0.005, "s", "for so long at least", MEASURED_ON_ARMS)
+    strike_s: float = limit(
+        0.008, "s", "and for so long where the teeth of a gap may strike in a quicker motion", MEASURED_ON_ARMS
+    )
     release_s: float = limit(0.05, "s", "a contact has ended when its torque was no larger than that for so long")
 
 
