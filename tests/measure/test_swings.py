@@ -26,7 +26,7 @@ from greywhale.protocol.firmware import TICK_S, pwm_steps
 from greywhale.protocol.schema import Board
 from tests.support.swings import chatter, duty_swings, rattle, ripple
 
-TIME_S = np.arange(6000) * 1e-3
+TIME_S = np.arange(6000, dtype=np.float64) * np.float64(1e-3)
 
 
 def wave(hz: float, size: float) -> np.ndarray:
