@@ -163,9 +163,8 @@ def estimate_external_torque(log: Log, model: ArmParameters, limits: TorqueLimit
     for start, stop in stretches(driven_rows(log)):
         live.restart()
         rows = slice(start, stop)
-        found = live.feed(log.time[rows], log.follower[rows], log.voltage[rows])
-        for whole, part in zip((torque, half, sight, contact), found, strict=True):
-            whole[rows] = part
+        told = live.feed(log.time[rows], log.follower[rows], log.voltage[rows])
+        torque[rows], half[rows], sight[rows], contact[rows] = told
     contacts = [
         _contact(joint, log.time, torque[:, joint], first, behind)
         for joint in log.joints_in_use
