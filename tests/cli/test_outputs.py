@@ -100,6 +100,7 @@ WRITERS = (
     ("export", "--fis", "table_10", "--joint", "0", "--out", "there"),
     ("export", "--header", "table_10", "--joint", "0", "--out", "there"),
     ("fis", "none", "--controller", "table_10", "--joint", "0", "--out", "there"),
+    ("import", "none", "--from", "npz", "--out", "there"),
     ("compare", "-o", "there.csv"),
     ("params", "backup", "there"),
     ("calibrate", "--backup", "there"),

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "arm/elementary.h"
 #include "arm/friction.h"
 #include "arm/supply.h"
 
@@ -18,8 +19,11 @@ constexpr double kSpeedNoise = 0.25, kTorqueNoise = 0.1875;
 constexpr double kTurning = 0.02;
 
 double share_of(double dt, double time_constant) {
-  return time_constant > 0.0 ? 1.0 - std::exp(-dt / time_constant) : 1.0;
+  return time_constant > 0.0 ? 1.0 - arm::exponential(-dt / time_constant) : 1.0;
 }
+
+double squared(double value) { return value * value; }
+double cubed(double value) { return value * squared(value); }
 
 int sign_of(double value) { return (value > 0.0) - (value < 0.0); }
 
@@ -91,7 +95,7 @@ void Observer::step(double dt, const Four& angles, const Four& volts, double fil
     inertia_[i] = links[i] + joint.actuator.inertia;
     momentum[i] += joint.actuator.inertia * v;
     // Friction turns over within the noise of the speed, so that it has no jump there.
-    const double slip = v / std::hypot(v, kTurning);
+    const double slip = v / std::sqrt(squared(v) + squared(kTurning));
     const double dry = arm::friction_torque(joint.friction, v);
     const double left = driven_[i].value - joint.actuator.damping * v - joint.actuator.inertia * acceleration_[i];
     passed_[i] = (left - dry * slip) / (1.0 + joint.friction.load * slip * sign_of(left - dry * slip));
@@ -160,7 +164,7 @@ Sight Ensemble::look(std::size_t i, double dt) {
 }
 
 double Ensemble::moving_speed(std::size_t i) const {
-  const double noise = std::sqrt(noise_[i] * kSpeedNoise / std::pow(limits_.filter_s, 3));
+  const double noise = std::sqrt(noise_[i] * kSpeedNoise / cubed(limits_.filter_s));
   return std::max(limits_.moving_rad_s, limits_.moving_spreads * noise);
 }
 
@@ -186,18 +190,20 @@ bool Ensemble::crosses_gap(std::size_t i, double dt) {
 }
 
 double Ensemble::own_deviation(const Observer& arm, std::size_t i) const {
-  const double noise = std::sqrt(noise_[i] * kTorqueNoise / std::pow(limits_.filter_s, 5)) * arm.inertia(i);
-  return std::hypot(noise, limits_.friction_share * arm.friction(i), limits_.drive_share * arm.stall(i));
+  const double noise =
+      std::sqrt(noise_[i] * kTorqueNoise / (cubed(limits_.filter_s) * squared(limits_.filter_s))) * arm.inertia(i);
+  return std::sqrt(squared(noise) + squared(limits_.friction_share * arm.friction(i)) +
+                   squared(limits_.drive_share * arm.stall(i)));
 }
 
 double Ensemble::known_width(std::size_t i) const {
   const Observer& likeliest = arms_[0];
   double spread = 0.0;
-  for (const Observer& arm : arms_) spread += std::pow(arm.torque(i) - likeliest.torque(i), 2);
+  for (const Observer& arm : arms_) spread += squared(arm.torque(i) - likeliest.torque(i));
   spread /= static_cast<double>(std::max<std::size_t>(arms_.size() - 1, 1));
   // Beside a heavy motor light links hardly show how much a volt pushes.
   const double scale = limits_.scale_share * likeliest.torque(i) * likeliest.inertia(i) / likeliest.link_inertia(i);
-  return limits_.interval * std::hypot(std::sqrt(spread), own_deviation(likeliest, i), scale);
+  return limits_.interval * std::sqrt(spread + squared(own_deviation(likeliest, i)) + squared(scale));
 }
 
 // A contact is what nearly all arms take for one, each by its own doubts: a scale that is not known hides none.

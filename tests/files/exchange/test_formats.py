@@ -167,6 +167,9 @@ def test_every_format_leads_to_a_writer() -> None:
         assert callable(getattr(__import__(f"{formats.__package__}.{module}", fromlist=[name]), name))
 
 
+TAKEN = {"bam": ExportOptions(1, 0.5, 0.1), "lerobot": ExportOptions(task="Wave")}
+
+
 @pytest.fixture
 def little_room() -> Iterator[None]:
     """No file may grow beyond 4 KB, as where the disk is full."""
@@ -182,5 +185,5 @@ def test_a_full_disk_is_said_and_leaves_nothing(
 ) -> None:
     out = tmp_path / f"new.{name}"
     with pytest.raises(UserError, match="cannot be written: file too large"):
-        write(name, [recording], out, ExportOptions(1, 0.5, 0.1) if name == "bam" else NONE)
+        write(name, [recording], out, TAKEN.get(name, NONE))
     assert [path.name for path in tmp_path.iterdir()] == ["log.csv"]

@@ -27,7 +27,7 @@ _NOT_HERE = {
     "record": {"reconnect", "yes", "episodes", "task"},
     "replay": {"yes"},
     "commission": {"yes"},
-    "info": {"watch", "seconds"},
+    "info": {"watch", "seconds", "model"},
 }
 
 

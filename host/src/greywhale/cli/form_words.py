@@ -77,6 +77,7 @@ WORDS: dict[str, Words] = {
     "doctor seconds": Words("Time to load the link", "s"),
     "doctor supply": Words("Voltage that you measured at the motors' supply", "V"),
     "evaluate picture": Words("Name of a picture"),
+    "evaluate model": Words("Model that tells what acts from outside", "", _MODEL),
     "evaluate repeatability": Words("Measure how exactly the arm came back to poses"),
     "identify validate": Words("Logs that only judge the model", "", _LOG),
     "identify controllers": Words("Controllers that the logs were recorded with", "", ("controller", "parameters")),

@@ -28,6 +28,7 @@ class MotionLimits:
     least_way_share: float = limit(
         0.25, "of the leader's way", "a joint that went less, or the other way, does not move freely"
     )
+    sinking_s: float = limit(0.15, "s", "the end of a log at which a joint that sinks goes at one speed")
     small_rad: tuple[float, ...] = limit((0.1, 0.0), "rad", "stops of the small moves, which come first")
     move_shares: tuple[float, ...] = limit(
         (0.9, -0.6, 0.3), "of the room", "stops of the moves; each joint begins at another one"

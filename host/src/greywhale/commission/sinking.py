@@ -8,13 +8,14 @@ from greywhale.arm import ArmParameters
 from greywhale.arm.body import Body
 from greywhale.arm.parameters import JOINT_NAMES
 from greywhale.arm.plants import plant_row
+from greywhale.commission.limits import COMMISSIONING_LIMITS, MotionLimits
 from greywhale.files.log import Log
 from greywhale.protocol.firmware import JOINTS
 
-LOOKED_AT_S = 0.15  # at the end of a log: a joint that sinks goes at one speed by then
 
-
-def describe_sinking(log: Log, joint: int, arm: ArmParameters) -> str:
+def describe_sinking(
+    log: Log, joint: int, arm: ArmParameters, limits: MotionLimits = COMMISSIONING_LIMITS.motion
+) -> str:
     """A clause where the joint ends a log on its way down, below its leader and against its voltage; "" otherwise.
 
     The arm's masses say which way is down, and its motor's damping how many volts the speed adds. The log says the
@@ -22,7 +23,7 @@ def describe_sinking(log: Log, joint: int, arm: ArmParameters) -> str:
     """
     if len(log.time) < 2:
         return ""
-    last = log.time > log.time[-1] - LOOKED_AT_S
+    last = log.time > log.time[-1] - limits.sinking_s
     pose = log.follower[last].mean(axis=0)[None]
     up = np.sign(Body.of(plant_row(arm)).bias(pose, np.zeros((1, JOINTS)))[0, joint])
     speed = up * np.polyfit(log.time[last] - log.time[-1], log.follower[last, joint], 1)[0]
