@@ -5,6 +5,8 @@ Library code raises it, and only the command line prints it: what went wrong, wh
 
 from __future__ import annotations
 
+import os
+
 FAILED = 1
 BAD_USAGE = 2
 
@@ -69,4 +71,6 @@ def cut(text: str, most: int = 60) -> str:
 def os_reason(error: OSError) -> str:
     """The operating system's own reason, in lower case, ready to stand inside a sentence."""
     reason = error.strerror or str(error) or type(error).__name__
+    if error.errno and "[errno " in reason:  # pyarrow puts words of its own around it
+        reason = os.strerror(error.errno)
     return reason[:1].lower() + reason[1:]
