@@ -116,3 +116,16 @@ def test_evaluate_tells_torques_and_contacts(
     answer = json.loads(capsys.readouterr().out)["logs"][0]["external_torque"]
     sizes = [one["torque_nm"] for one in answer["contacts"]]
     assert [np.sign(one) for one in sizes] == [np.sign(push.torque) for push in pushes]
+
+
+def test_an_export_has_the_torque_beside_the_logs_quantities(
+    pushed: Log, found: ExternalTorque, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = tmp_path / "log.npz"
+    assert entry.run(["export", pushed.name, "--to", "npz", "--model", str(MODEL), "--out", str(out)]) == 0
+    with np.load(out) as arrays:
+        assert np.array_equal(arrays["external_torque"], np.where(found.told, found.torque, 0.0))
+        assert np.array_equal(arrays["external_torque_half_width"], found.half_width)
+        assert np.array_equal(arrays["external_torque_told"], found.told)
+    assert entry.run(["export", pushed.name, "--to", "bam", "--model", str(MODEL), "--out", str(out)]) == 2
+    assert "--model does not go with --to bam" in capsys.readouterr().err

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import NotRequired, TypedDict
 
 import click
+import numpy as np
 
 from greywhale.base.formats.whole import refuse_inputs, write_text
 from greywhale.cli import completion
@@ -13,8 +14,8 @@ from greywhale.cli.export_controller import HeaderFacts, export_fis, export_head
 from greywhale.cli.output import FILE, json_option, option, overwrite_option, show, warn
 from greywhale.files.exchange.formats import FORMATS, require_possible
 from greywhale.files.exchange.formats import write as write_logs
-from greywhale.files.exchange.recording import ExportOptions, Recording
-from greywhale.files.log import read_log
+from greywhale.files.exchange.recording import ExportOptions, JointColumns, Recording
+from greywhale.files.log import Log, read_log
 from greywhale.files.outputs import require_new, require_new_folder
 
 MOST_FPS = 1000  # a frame a sample
@@ -49,6 +50,7 @@ _LINES = [f"{name}, {one.does.rstrip('.')}" for name, one in FORMATS.items()]
 @option("--length", type=float, help="With --to bam: its length, m.")
 @option("--fps", type=click.IntRange(1, MOST_FPS), help="With --to lerobot: frames a second.  [default: 30]")
 @option("--task", metavar="TEXT", help="With --to lerobot: the task in words, for logs that name none or another.")
+@option("--model", shell_complete=completion.arms, help="With --to: add the torque from outside, by this model.toml.")
 @overwrite_option
 @json_option(ExportAnswer)
 def command(
@@ -65,6 +67,7 @@ def command(
     length: float | None,
     fps: int | None,
     task: str | None,
+    model: str | None,
     overwrite: bool,
     as_json: bool,
 ) -> None:
@@ -81,9 +84,11 @@ def command(
     """
     if sum(source is not None for source in (to, fis, header, urdf, mjcf)) != 1 or (to is not None) != bool(logs):
         raise click.UsageError("Give logs and --to, or exactly one of --fis, --header, --urdf and --mjcf.")
-    options = ExportOptions(joint, mass, length, fps, task)
+    options = ExportOptions(joint, mass, length, fps, task, model)
     if to is None and options != ExportOptions(joint):
-        raise click.UsageError("--mass, --length, --fps and --task are for logs; give --to, or leave them out.")
+        raise click.UsageError(
+            "--mass, --length, --fps, --task and --model are for logs; give --to."
+        )
     if gears and mjcf is None:
         raise click.UsageError("--gears goes with --mjcf: the other formats have no word for them.")
     if joint is not None and to is None and not has_joints(fis or header):
@@ -112,7 +117,23 @@ def _export_logs(logs: tuple[Path, ...], to: str, out: Path, options: ExportOpti
         require_new(overwrite, out)
     read = [read_log(path) for path in logs]
     warn(remark for log in read for remark in log.remarks)
-    return write_logs(to, [Recording(log) for log in read], out, options)
+    recordings = [Recording(log, _torque(log, options.model)) for log in read]
+    return write_logs(to, recordings, out, options)
+
+
+def _torque(log: Log, model: str | None) -> tuple[JointColumns, ...]:
+    """The torque from outside (0 where it cannot be told), half of its interval's width, and 1 where it is told."""
+    if model is None:
+        return ()
+    from greywhale.files.arm import load_arm
+    from greywhale.observe import estimate_external_torque
+
+    found = estimate_external_torque(log, load_arm(model))
+    return (
+        JointColumns("external_torque", "N m", found.torque * found.told),
+        JointColumns("external_torque_half_width", "N m", found.half_width),
+        JointColumns("external_torque_told", "", found.told.astype(np.float64)),
+    )
 
 
 def _export_arm(urdf: str | None, mjcf: str | None, gears: bool, out: Path, overwrite: bool) -> Path:

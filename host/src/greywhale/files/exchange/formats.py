@@ -32,21 +32,22 @@ class Format:
     folder: tuple[str, ...] = ()  # what it writes is a folder, which holds these
 
 
+TORQUE = ("model",)  # which computes quantities beside those of the log
 FORMATS = {
     "bam": Format("one joint for Rhoban's BAM.", "bam:write", options=("joint", "mass", "length")),
-    "mcap": Format("for PlotJuggler and Foxglove.", "mcap:write", "mcap", ("mcap.writer", "google.protobuf")),
-    "mat": Format("for MATLAB and Octave.", "mat:write"),
+    "mcap": Format("for PlotJuggler and Foxglove.", "mcap:write", "mcap", ("mcap.writer", "google.protobuf"), TORQUE),
+    "mat": Format("for MATLAB and Octave.", "mat:write", options=TORQUE),
     "lerobot": Format(
         "a LeRobot dataset v3.0 (a folder), one log an episode.",
         "lerobot:write",
         extra="lerobot",
         packages=("pyarrow.parquet",),
-        options=("fps", "task"),
+        options=("fps", "task", *TORQUE),
         many=True,
         folder=("data", "meta"),
     ),
-    "npz": Format("numpy's arrays.", "npz:write"),
-    "parquet": Format("a table for pandas, DuckDB and others.", "parquet:write", "parquet", ("pyarrow",)),
+    "npz": Format("numpy's arrays.", "npz:write", options=TORQUE),
+    "parquet": Format("a table for pandas, DuckDB and others.", "parquet:write", "parquet", ("pyarrow",), TORQUE),
 }
 
 

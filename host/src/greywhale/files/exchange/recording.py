@@ -82,3 +82,4 @@ class ExportOptions:
     length: float | None = None  # m
     fps: int | None = None  # frames a second
     task: str | None = None  # in words
+    model: str | None = None  # file of an identified arm: the torque from outside goes beside the log's quantities
