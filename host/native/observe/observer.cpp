@@ -236,7 +236,7 @@ bool Ensemble::may_be_play(std::size_t i, double dt) {
 void Ensemble::judge_contact(std::size_t i, double dt, Seen& seen) {
   Track& track = tracks_[i];
   const bool sighted = seen.sight != Sight::at_stop && seen.sight != Sight::unused;
-  const bool touched = sighted && touches(i, seen.sight == Sight::told);
+  const bool touched = sighted && touches(i, seen.sight == Sight::told && !is_slow(i));
   if (!touched) track.unseen_rad = track.unseen_rad_s = 0.0;
   track.beyond_s = touched && !may_be_play(i, dt) ? track.beyond_s + dt : 0.0;
   track.free_s = touched ? 0.0 : track.free_s + dt;
