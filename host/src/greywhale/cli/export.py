@@ -86,9 +86,7 @@ def command(
         raise click.UsageError("Give logs and --to, or exactly one of --fis, --header, --urdf and --mjcf.")
     options = ExportOptions(joint, mass, length, fps, task, model)
     if to is None and options != ExportOptions(joint):
-        raise click.UsageError(
-            "--mass, --length, --fps, --task and --model are for logs; give --to."
-        )
+        raise click.UsageError("--mass, --length, --fps, --task and --model are for logs; give --to.")
     if gears and mjcf is None:
         raise click.UsageError("--gears goes with --mjcf: the other formats have no word for them.")
     if joint is not None and to is None and not has_joints(fis or header):
