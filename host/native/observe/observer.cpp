@@ -223,11 +223,16 @@ bool Ensemble::is_slow(std::size_t i) const {
 }
 
 // A joint that turns crosses the play of its potentiometer unseen, by its motor's torque that nothing seems to take.
-bool Ensemble::may_be_play(std::size_t i, double dt) {
+// Then the reading catches up at once, as if the same impulse came the other way.
+bool Ensemble::may_be_play(std::size_t i, double dt, Sight sight) {
   const Observer& arm = arms_[0];
   Track& track = tracks_[i];
   const double play = 2.0 * limits_.play_share * arm.row().plant.joints[i].sensor.play;
-  if (play <= 0.0 || !is_slow(i)) return false;
+  if (play <= 0.0) return false;
+  const bool catches_up = sight == Sight::turning && arm.torque(i) * track.unseen_impulse < 0.0;
+  if (!is_slow(i) && !catches_up) return false;
+  track.unseen_impulse += arm.torque(i) * dt;
+  if (catches_up) return true;
   track.unseen_rad_s += std::fabs(arm.torque(i)) / arm.inertia(i) * dt;
   track.unseen_rad += track.unseen_rad_s * dt;
   return track.unseen_rad < play;
@@ -238,7 +243,8 @@ void Ensemble::judge_contact(std::size_t i, double dt, Seen& seen) {
   const bool sighted = seen.sight != Sight::at_stop && seen.sight != Sight::unused;
   const bool touched = sighted && touches(i, seen.sight == Sight::told && !is_slow(i));
   if (!touched) track.unseen_rad = track.unseen_rad_s = 0.0;
-  track.beyond_s = touched && !may_be_play(i, dt) ? track.beyond_s + dt : 0.0;
+  if (track.free_s >= limits_.settle_s) track.unseen_impulse = 0.0;
+  track.beyond_s = touched && !may_be_play(i, dt, seen.sight) ? track.beyond_s + dt : 0.0;
   track.free_s = touched ? 0.0 : track.free_s + dt;
   const bool strikes = (seen.sight == Sight::in_gap || seen.sight == Sight::turning) && !is_slow(i) &&
                        arms_[0].row().plant.joints[i].gear.half_gap > 0.0;

@@ -91,6 +91,7 @@ class Ensemble {
     int side = 0;          // of the teeth that touch
     double apart_rad = 0.0, apart_rad_s = 0.0;
     double unseen_rad = 0.0, unseen_rad_s = 0.0;  // what the joint may have moved within its potentiometer's play
+    double unseen_impulse = 0.0;                  // N m s, that nothing seemed to take
     double beyond_s = 0.0, free_s = 0.0;
     bool contact = false;
   };
@@ -103,7 +104,7 @@ class Ensemble {
   double known_width(std::size_t i) const;  // half the interval's width where friction is known
   bool touches(std::size_t i, bool told) const;
   bool is_slow(std::size_t i) const;
-  bool may_be_play(std::size_t i, double dt);
+  bool may_be_play(std::size_t i, double dt, Sight sight);
   void judge_contact(std::size_t i, double dt, Seen& seen);
 
   std::vector<Observer> arms_;
