@@ -50,9 +50,13 @@ def open_source(path: Path, format_: str, joint: int | None) -> Source:
     except UserError:
         raise
     except Exception as error:  # whatever the formats' own readers say
-        raise UserError(
-            f"{path}: cannot be read as {format_}: {cut(str(error) or type(error).__name__, 200)}."
-        ) from None
+        raise UserError(f"{path}: cannot be read as {format_}: {_first_sentence(error)}.") from None
+
+
+def _first_sentence(error: Exception) -> str:
+    """A reader's own words; numpy goes on with advice to trust the file."""
+    told = str(error) or type(error).__name__
+    return cut(told.splitlines()[0].split(". ")[0].rstrip("."), 200)
 
 
 def _held(columns: Columns, facts: Mapping[str, str], usual: Mapping[str, Rule]) -> Source:
