@@ -28,7 +28,7 @@ ALLOWED = {
     "commission/arm_on_port.py": {"TRIES": "repeats where this computer was too busy; the arm is not judged"},
     "commission/foresee.py": {"SEED": SEED, "LEAST": ROUNDING},
     "commission/measures.py": {"LATEST_BEGIN_S": "how far the beginning of the check is looked for in its log"},
-    "commission/motions.py": {"RATE_HZ": DRAWN, "REACHES_SEED": SEED},
+    "commission/motions.py": {"REACHES_SEED": SEED},
     "commission/request.py": {"ROUNDS": ASKED, "TRIALS": ASKED},
     "commission/run.py": {"DESIGN_BUDGET": COUNTS},
     "commission/search.py": {"LEAST_RAD2": ROUNDING},
@@ -58,10 +58,7 @@ ALLOWED = {
         **dict.fromkeys(("SETTLINGS", "SETTLED_STEPS", "FITS", "SURE_TURNS"), COUNTS),
         "LOOP_STEP_SCALE": FINE,
     },
-    "identify/space.py": {
-        "COUPLED": "the joints' numbers",
-        "PITCH": "the joints' numbers",
-    },
+    "identify/space.py": {"COUPLED": "the joints' numbers"},
     "identify/steps.py": dict.fromkeys(("DAMPINGS", "LARGEST_STEP", "MOST_DAMPING", "ENOUGH"), FINE),
     "identify/soft_teeth.py": {"SWINGS_HZ": FINE},
     "identify/uncertainty.py": {"LARGEST_CONDITION": ROUNDING},
@@ -95,7 +92,7 @@ ALLOWED = {
     "tune/run.py": {"MOST_BUDGET": ASKED},
     "tune/search/lockstep.py": {"TURNS": "the joints' numbers", "RANKS": COUNTS},
     "tune/search/space.py": {"NARROWEST_STATED": "how people write the least width"},
-    "tune/search/training.py": {"RATE_HZ": DRAWN, "WAIT_S": DRAWN, "HUMAN_SEED": SEED},
+    "tune/search/training.py": {"WAIT_S": DRAWN, "HUMAN_SEED": SEED},
     "tune/travel.py": {"SAMPLES": COUNTS, "SEED": SEED},
 }
 

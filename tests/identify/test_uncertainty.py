@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from greywhale.arm import ArmParameters
+from greywhale.arm.summary import PITCH_JOINTS
 from greywhale.identify.data import prepare
 from greywhale.identify.limits import IDENTIFICATION_LIMITS
-from greywhale.identify.space import MOTOR, PITCH, Space
+from greywhale.identify.space import MOTOR, Space
 from greywhale.identify.uncertainty import uncertainty
 from greywhale.identify.windows import WindowResidual
 from tools.support.recordings import Recorded
@@ -22,7 +23,7 @@ def test_a_torque_is_no_surer_than_the_masses_that_it_lifts(recorded: Recorded, 
     np.testing.assert_array_equal(sure.covariance, plain.covariance)
     by_links = dict(zip(space.names, np.sqrt(np.diag(sure.besides)), strict=True))
     mass = IDENTIFICATION_LIMITS.uncertainty.mass_share / np.sqrt(3.0)
-    for joint in PITCH:
+    for joint in PITCH_JOINTS:
         assert 0.5 * mass < by_links[f"joint{joint}.alpha"] < 1.5 * mass
         assert by_links[f"joint{joint}.damping"] < 0.5 * mass
     assert np.all(sure.deviations >= plain.deviations)

@@ -9,6 +9,7 @@ import os
 
 FAILED = 1
 BAD_USAGE = 2
+INTERRUPTED = 130  # after Ctrl-C, as shells have it: 128 + SIGINT
 
 
 # A sentence is no longer than this: what a file holds may be as long as it likes.
@@ -46,6 +47,13 @@ def require_within(what: str, value: int, least: int, most: int) -> None:
         raise BadUsage(f"{what} is {value}, but it must be at least {least}.")
     if value > most:
         raise BadUsage(f"{what} is {value}, but it must be at most {most}.")
+
+
+def require_between(what: str, value: float, unit: str, ends: tuple[float, float]) -> None:
+    """Refuse a number that is out of its range, or none, as bad usage."""
+    if not ends[0] <= value <= ends[1]:
+        of_unit = f" {unit}" if unit else ""
+        raise BadUsage(f"{what} is {value:g}{of_unit}; it must be {ends[0]:g} to {ends[1]:g}.")
 
 
 def counted(number: int, thing: str) -> str:

@@ -16,7 +16,7 @@ from typing import Annotated, NotRequired, TypedDict
 
 import numpy as np
 
-from greywhale.base.errors import BadUsage, UserError
+from greywhale.base.errors import BadUsage, UserError, require_between
 from greywhale.base.types import Floats, Progress, show_no_progress
 from greywhale.board.device import Device
 from greywhale.board.lead import Leading, Plan
@@ -195,8 +195,7 @@ def pose_of(device: Device) -> Floats:
 
 def check_request(seconds: float, every: int, enable: bool) -> None:
     """Refuse a length, or samples so rare, that no board can record."""
-    if not _SHORTEST_S <= seconds <= LONGEST_S:
-        raise BadUsage(f"the duration is {seconds:g} s; it must be {_SHORTEST_S:g} to {LONGEST_S:g} s.")
+    require_between("the duration", seconds, "s", (_SHORTEST_S, LONGEST_S))
     longest = _LONGEST_EVERY_ENABLED_TICKS if enable else _LONGEST_EVERY_TICKS
     if not 1 <= every <= longest:
         motors = " while the motors are on" if enable else ""

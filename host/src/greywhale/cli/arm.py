@@ -10,7 +10,7 @@ import numpy as np
 
 from greywhale.arm.from_urdf import Imported, import_urdf
 from greywhale.arm.parameters import JOINT_NAMES
-from greywhale.base.errors import BadUsage
+from greywhale.base.errors import require_between
 from greywhale.base.formats.whole import refuse_inputs, write_text
 from greywhale.base.telling import Sentences, Telling
 from greywhale.base.types import PerJoint
@@ -18,11 +18,9 @@ from greywhale.cli.arm_match import match
 from greywhale.cli.arm_new import new
 from greywhale.cli.arm_table import Lifting, lifting, notes, table
 from greywhale.cli.group import Group
-from greywhale.cli.output import FILE, json_option, option, overwrite_option, show
+from greywhale.cli.output import FILE, SUPPLY_V, json_option, option, overwrite_option, show
 from greywhale.files.model import arm_toml
 from greywhale.files.outputs import require_new
-
-SUPPLY_V = (1.0, 60.0)  # of motors that an Arduino drives
 
 
 class ArmImportAnswer(Lifting):
@@ -55,8 +53,7 @@ def import_(urdf: Path, out: Path, supply: float, overwrite: bool, as_json: bool
     it is. A URDF says nothing about gears, and its motors only by their effort and velocity limits, where 0 asks for a
     guess: `greywhale identify` finds what they really are.
     """
-    if not SUPPLY_V[0] <= supply <= SUPPLY_V[1]:
-        raise BadUsage(f"--supply is {supply:g} V; it must be {SUPPLY_V[0]:g} to {SUPPLY_V[1]:g}.")
+    require_between("--supply", supply, "V", SUPPLY_V)
     refuse_inputs(out, urdf)
     require_new(overwrite, out)
     found = import_urdf(urdf, supply)

@@ -11,7 +11,7 @@ import click
 import numpy as np
 import numpy.typing as npt
 
-from greywhale.base.errors import BadUsage, UserError, cut
+from greywhale.base.errors import BadUsage, UserError, cut, require_between
 from greywhale.base.telling import Column, Part, Row, Sentences, Step, Table, Telling
 from greywhale.base.types import Crc, PerJoint
 from greywhale.board.calibrate import Options, Result, calibrate
@@ -93,8 +93,7 @@ def command(
     if history:
         click.get_current_context().invoke(calibrations.command, back=None, port=port, as_json=as_json)
         return
-    if not TRACK_DEG[0] <= track <= TRACK_DEG[1]:
-        raise BadUsage(f"--track is {track:g} degrees; it must be {TRACK_DEG[0]:g} to {TRACK_DEG[1]:g}.")
+    require_between("--track", track, "degrees", TRACK_DEG)
     joints = parse(in_use)
     poses = Options(
         _angles("--first", first),

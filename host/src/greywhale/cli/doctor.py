@@ -6,15 +6,14 @@ from pathlib import Path
 
 import click
 
-from greywhale.base.errors import BadUsage, counted
+from greywhale.base.errors import BadUsage, counted, require_between
 from greywhale.base.telling import Column, Row, Sentences, Step, Table, Telling
 from greywhale.board.doctor import Finding, Verdict, examine, worst
 from greywhale.board.doctor.examine import LINK_S
-from greywhale.cli.output import FILE, OnPort, json_option, option, port_option, progress, show
+from greywhale.cli.output import FILE, SUPPLY_V, OnPort, json_option, option, port_option, progress, show
 from greywhale.protocol.ports import choose_port
 
 LONGEST_S = 3600.0  # of the look at the link
-SUPPLY_V = (1.0, 60.0)  # of motors that an Arduino drives
 _COLUMNS = (Column(width=5, left=True), Column(width=14, left=True), Column(width=1, left=True))
 
 
@@ -48,10 +47,9 @@ def command(
 
     The motors stay off. Keep both arms still. The exit code is 1 when something must be mended.
     """
-    if not 0.5 <= seconds <= LONGEST_S:
-        raise BadUsage(f"--seconds is {seconds:g}; it must be 0.5 to {LONGEST_S:g}.")
-    if supply is not None and not SUPPLY_V[0] <= supply <= SUPPLY_V[1]:
-        raise BadUsage(f"--supply is {supply:g} V; it must be {SUPPLY_V[0]:g} to {SUPPLY_V[1]:g}.")
+    require_between("--seconds", seconds, "", (0.5, LONGEST_S))
+    if supply is not None:
+        require_between("--supply", supply, "V", SUPPLY_V)
     if hex_file is not None and not image:
         raise BadUsage("--hex belongs to --image; add that, or leave it out.")
     chosen = choose_port(port)

@@ -19,13 +19,22 @@ from typing import Annotated, NoReturn, TypedDict
 import click
 
 from greywhale.base import system
-from greywhale.base.errors import BAD_USAGE, FAILED, LONGEST_SENTENCE, BadUsage, UserError, cut, os_reason, printable
+from greywhale.base.errors import (
+    BAD_USAGE,
+    FAILED,
+    INTERRUPTED,
+    LONGEST_SENTENCE,
+    BadUsage,
+    UserError,
+    cut,
+    os_reason,
+    printable,
+)
 from greywhale.cli import tracing
 from greywhale.cli.output import json_of
 from greywhale.cli.verbs import greywhale
 from greywhale.cli.wrapping import fit
 
-INTERRUPTED = 130  # the exit code after Ctrl-C, as shells have it: 128 + SIGINT
 logger = logging.getLogger(__name__)
 
 

@@ -54,6 +54,9 @@ class OnPort(TypedDict):
     port: str  # the serial port that was used
 
 
+SUPPLY_V = (1.0, 60.0)  # of motors that an Arduino drives
+
+
 def option(*names: str, **settings: Any) -> Callable[[Command], Command]:
     """click's option, whose help says the default."""
     return click.option(*names, show_default="default" in settings, **settings)

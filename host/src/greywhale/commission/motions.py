@@ -14,10 +14,9 @@ from greywhale.base.types import Floats
 from greywhale.commission.limits import COMMISSIONING_LIMITS, MotionLimits
 from greywhale.files.trajectory import Trajectory
 from greywhale.loop import human_reaches
-from greywhale.loop.leader_motions import RANGE_RAD, minimum_jerk, move_through
+from greywhale.loop.leader_motions import RANGE_RAD, RATE_HZ, minimum_jerk, move_through
 from greywhale.protocol.firmware import FASTEST_LED_RAD_S, JOINTS
 
-RATE_HZ = 200.0
 REACHES_SEED = 3281  # in these each joint goes far; they judge nothing anywhere else
 PARTS = ("small moves", "moves", "reaches", "slow motion", "holding still")
 

@@ -21,14 +21,13 @@ from pathlib import Path
 from typing import Any, Literal, TypedDict
 
 from greywhale.base import processes
-from greywhale.base.errors import printable
+from greywhale.base.errors import INTERRUPTED, printable
 from greywhale.board.refusal import upper_first
 from greywhale.dashboard.client import Client
 from greywhale.dashboard.lending import MOST_SAMPLES, LentEnd
 from greywhale.dashboard.outbox import Outbox
 from greywhale.dashboard.relay import Relay, Wish
 
-INTERRUPTED = 130  # the exit code of a verb that Ctrl-C ended
 # A verb that was interrupted stops motors and writes its files; one that does not end by then hangs.
 END_WAIT_S = 15.0
 MOST_SAID_LINES = 200  # kept of a verb's output, the newest

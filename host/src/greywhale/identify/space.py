@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from greywhale.arm import ArmParameters
 from greywhale.arm.parameters import Tip
 from greywhale.arm.plants import column, plant_row
+from greywhale.arm.summary import PITCH_JOINTS
 from greywhale.base.types import Floats
 from greywhale.protocol.firmware import JOINTS
 
@@ -75,7 +76,6 @@ COUPLED = ((0,), (1, 2), (3,))
 # Quantities of the arm as a whole: their joint is this number.
 OF_THE_ARM = ("sag", "tip")
 WHOLE_ARM = JOINTS
-PITCH = (1, 2)  # only these feel gravity, so only they have a zero angle that matters
 
 
 _JOINT_NUMBERS = {f"joint{number}": number for number in range(JOINTS)} | {"arm": WHOLE_ARM}
@@ -115,7 +115,7 @@ class Space:
             Parameter(joint, kind)
             for joint in joints
             for kind in kinds
-            if kind not in OF_THE_ARM and (kind != "offset" or joint in PITCH)
+            if kind not in OF_THE_ARM and (kind != "offset" or joint in PITCH_JOINTS)
         ]
         chosen += [Parameter(WHOLE_ARM, kind) for kind in kinds if kind in OF_THE_ARM]
         return cls(arm, tuple(chosen), plant_row(arm))

@@ -13,9 +13,9 @@ from cobs import cobs
 
 from greywhale.base.errors import UserError
 
+from .declared import CRC_START
 from .schema import MAX_PAYLOAD
 
-CRC_START = 0xFFFF
 OVERHEAD = 4  # type, seq and CRC
 MAX_WIRE = MAX_PAYLOAD + OVERHEAD + 1  # with the COBS byte, without the closing zero
 

@@ -9,11 +9,12 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from greywhale.arm.from_plant import BACK_EMF_SHARE
+
 RAD_S_PER_RPM = math.tau / 60.0
 USUAL_NO_LOAD_SHARE = 0.05  # of the stall current
 USUAL_BREAKAWAY_RATIO = 1.25  # friction at rest to sliding friction
 USUAL_TIME_CONSTANT_S = 0.02  # a brushed motor alone is at full speed about three times as late
-BACK_EMF_SHARE = 0.95  # of the slope at most: some of it is viscous
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ from pathlib import Path
 
 from greywhale.arm import ArmParameters
 from greywhale.base.bench_process import BenchProcess, RunningBench
-from greywhale.base.errors import BadUsage, UserError
+from greywhale.base.errors import UserError, require_between
 from greywhale.base.formats.whole import make_folder, write_text
 from greywhale.base.types import NotedProgress, show_no_progress
 from greywhale.board import flash
@@ -175,16 +175,11 @@ class _Stage:
 
 def _motion(options: DemoOptions) -> Trajectory:
     if options.controller is None:
-        _check("practice", options.practice_s, SHORTEST_PRACTICE_S, LONGEST_PRACTICE_S)
+        require_between("the practice", options.practice_s, "s", (SHORTEST_PRACTICE_S, LONGEST_PRACTICE_S))
     if options.leader is not None:
         return load_leader(options.leader)
-    _check("duration", options.duration_s, SHORTEST_S, LONGEST_S)
+    require_between("the duration", options.duration_s, "s", (SHORTEST_S, LONGEST_S))
     return human_reaches(options.seed, options.duration_s)
-
-
-def _check(what: str, seconds: float, shortest_s: float, longest_s: float) -> None:
-    if not shortest_s <= seconds <= longest_s:
-        raise BadUsage(f"the {what} is {seconds:g} s; it must be {shortest_s:g} to {longest_s:g} s.")
 
 
 def _draw(options: DemoOptions, runs: list[Run], supply_v: float) -> Path:

@@ -16,7 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from greywhale.arm import ArmParameters
-from greywhale.base.errors import BadUsage, UserError, require_within
+from greywhale.base.errors import UserError, require_between, require_within
 from greywhale.base.types import Floats, Progress, show_no_progress
 from greywhale.files.trajectory import Trajectory
 from greywhale.identify.excite.information import information, natural_sizes, prior
@@ -168,8 +168,7 @@ def design(
 
 def check_effort(seconds: float, budget: int) -> None:
     """Refuse lengths and budgets that make no sense, before anything is done."""
-    if not SHORTEST_S <= seconds <= LONGEST_S:
-        raise BadUsage(f"the motion is {seconds:g} s long; it must be {SHORTEST_S:g} to {LONGEST_S:g} s.")
+    require_between("the motion's length", seconds, "s", (SHORTEST_S, LONGEST_S))
     require_within("budget", budget, 1, MOST_BUDGET)
 
 

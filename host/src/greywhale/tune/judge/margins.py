@@ -24,13 +24,13 @@ from greywhale.base.limits import numbers_in
 from greywhale.base.types import Controllers, Flags, Floats, Integers
 from greywhale.files.trajectory import Trajectory
 from greywhale.loop import Experiment, Timing
-from greywhale.loop.leader_motions import minimum_jerk
+from greywhale.loop.leader_motions import RATE_HZ, minimum_jerk
 from greywhale.measure.swings import FOR_SIMULATIONS
 from greywhale.protocol.firmware import JOINTS, pwm_steps
 from greywhale.protocol.table import ParameterTable
 from greywhale.tune.limits import TUNING_LIMITS, MarginLimits, TuningLimits
 from greywhale.tune.search.objective import follow, pair_with_plants
-from greywhale.tune.search.training import RATE_HZ, centre, reach, training_motions
+from greywhale.tune.search.training import centre, reach, training_motions
 
 WAIT_S = 0.2  # before a motion begins
 _MOVING_SEED = 50  # of sensor noise that no search hears

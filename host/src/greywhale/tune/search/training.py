@@ -19,12 +19,11 @@ from greywhale.base.types import Floats
 from greywhale.files.trajectory import Trajectory
 from greywhale.loop import Experiment, human_reaches
 from greywhale.loop.closed_loop import FollowerLines
-from greywhale.loop.leader_motions import minimum_jerk
+from greywhale.loop.leader_motions import RATE_HZ, minimum_jerk
 from greywhale.protocol.firmware import JOINTS
 from greywhale.protocol.table import ParameterTable
 from greywhale.tune.limits import TUNING_LIMITS, TrainingLimits
 
-RATE_HZ = 200.0
 WAIT_S = 0.2  # before a motion begins
 HUMAN_SEED = 1006  # of reaches in which every joint moves far: where one hardly moves, its cost is mostly noise
 SLOW = "slow following"
