@@ -6,9 +6,7 @@ import { fixed } from "../../files/words";
 import { LinkError } from "../../link/declared";
 import { upperFirst } from "../../link/refusal";
 import { TABLE } from "../../link/schema";
-import { button, download, el, select, setText } from "../../parts/dom";
-import { grey } from "../../parts/grey";
-import { sentenceOf } from "../../parts/sentence";
+import { download, el, select } from "../../parts/dom";
 import { FULL_SCALE, COUNT14_PER_COUNT, potParameter, potsOf } from "../../session/pots";
 import { JOINT_NAMES, JOINTS } from "../../session/samples";
 import type { Bench, Calibrations, HandsWish, KeptCalibration } from "../../session/services";
@@ -18,6 +16,7 @@ import type { Countdown } from "../verbs/countdown";
 import type { View } from "../view";
 import { earlierList, withCalibration } from "./earlier";
 import { Hands } from "./hands";
+import { StepPanel, type Action } from "./panel";
 import { Trial } from "./pulses";
 import { foundTables, motorInWords } from "./result";
 import { Rules } from "./rules";
@@ -28,15 +27,11 @@ import { jointTitle, motorsAsked, poseAsked, poseInWords } from "./words";
 const DEGREE = Math.PI / 180;
 const SECOND_DEG = [60, 50, -45, 40]; // far enough from 0 at every joint
 const THIRD_RAD = [-35, -20, 30, -40].map((angle) => DEGREE * angle); // of the bench's hands
-const OFF = "Calibrate with the motors off; press Stop first.";
 const BY_HANDS = "This arm is simulated, and its hands can do each step for you. First break something in Bench, such as a reversed potentiometer "
   + "or motor: it is found here and put right.";
 const NOT_TRIED = "The motors were not tried: Stop was pressed, or the page was hidden.";
 const STOPPED = "Stop was pressed; the other motors were not tried.";
 const NO_RULES = "This page came without the rules of a calibration; run `make setup` and reload it, or `greywhale calibrate` in a terminal.";
-
-/** A button of a step, and the reason why it cannot be pressed now. */
-type Action = { readonly button: HTMLButtonElement; readonly whyNot: () => string; readonly usual: string };
 
 export class CalibrateView implements View {
   readonly name = "Calibrate";
@@ -46,20 +41,12 @@ export class CalibrateView implements View {
   private angles: number[][] = [[0, 0, 0, 0], SECOND_DEG]; // of the known poses, degrees
   private known = true; // the second pose's angles are
   private mends = false; // a sweep with a mistake is to be done again
-  private busy = ""; // what is under way, in a sentence
   private stored: Found | null = null; // to be undone
-  private pressed = ""; // the label of the last button
-  private actions: Action[] = [];
+  private readonly panel: StepPanel;
   private readonly hands: Hands | null;
   private readonly bars: PotBars;
   private readonly list = el("div", { class: "steps", attrs: { role: "group", "aria-label": "Steps" } });
-  private readonly title = el("h3");
-  private readonly asked = el("p", { attrs: { role: "status" } });
   private readonly picture = el("div", { class: "joint-picture", hidden: true, attrs: { role: "img" } });
-  private readonly body = el("div", { class: "step-body" });
-  private readonly problem = el("p", { class: "problem", attrs: { role: "alert" } });
-  private readonly row = el("div", { class: "row" });
-  private readonly reason = el("p", { class: "reason", attrs: { role: "status" } });
 
   /** `code` brings the rules of a calibration, once they are asked for; `bench` has hands, where the arm is simulated. */
   constructor(
@@ -67,95 +54,37 @@ export class CalibrateView implements View {
     private readonly countdown: Pick<Countdown, "before">, private readonly kept: Calibrations, bench: Bench | null = null,
   ) {
     this.hands = bench && new Hands(session, bench);
+    this.panel = new StepPanel(session);
     this.bars = new PotBars(session);
     this.element = el("div", { class: "editor calibrate" },
-      el("section", { class: "card" }, el("h2", {}, "Calibrate"), this.list,
-        this.title, this.asked, this.body, this.problem, this.row, this.reason, this.picture),
+      el("section", { class: "card" }, el("h2", {}, "Calibrate"), this.list, ...this.panel.elements, this.picture),
       el("section", { class: "card" }, el("h2", {}, "Potentiometers"), this.bars.element,
         el("p", { class: "quiet" }, `Counts of ${FULL_SCALE}, and degrees where the board is calibrated.`)));
-    session.changed.on(() => this.refresh());
+    session.changed.on(() => this.panel.refresh());
     this.showBeginning();
   }
 
   enter(): void {
-    void this.attempt(async () => {
+    void this.panel.attempt(async () => {
       await this.session.readParameters();
       await this.showEarlier();
     });
   }
 
   leave(): void {
-    this.pressed = "";
+    this.panel.forgetFocus();
     this.hands?.letGo();
   }
 
   frame(): void {
     this.bars.frame();
-    this.refresh();
+    this.panel.refresh();
   }
 
-  // --- what every step has ------------------------------------------------------------------------------------------
-
-  /** The reason why nothing can be done now, in a sentence; empty where something can. */
-  private whyNot(): string {
-    const { link, whyNotChange, motorsOn } = this.session;
-    if (!link.open) return link.sentence || "No board is there yet.";
-    return this.busy || whyNotChange || (motorsOn ? OFF : "");
-  }
-
-  private refresh(): void {
-    for (const { button: one, whyNot, usual } of this.actions) grey(one, whyNot(), usual);
-    const reason = this.whyNot();
-    setText(this.reason, reason);
-    this.reason.hidden = !reason;
-  }
+  // --- the way ------------------------------------------------------------------------------------------------------
 
   private showPanel(title: string, asked: string, body: readonly HTMLElement[], actions: readonly Action[]): void {
-    setText(this.title, title);
-    setText(this.asked, asked);
-    this.body.replaceChildren(...body);
-    this.row.replaceChildren(...actions.map(({ button: one }) => one));
-    this.actions = [...actions, ...this.stepButtons()];
-    this.refresh();
-    this.keepFocus();
-  }
-
-  /** Whoever goes on by the keyboard stays at the button that was pressed, or its like in the next step, else at the first. */
-  private keepFocus(): void {
-    if (document.activeElement !== document.body || !this.pressed) return; // a button that is gone, or grey, has no focus
-    const like = this.actions.find(({ button: one }) => one.textContent === this.pressed && this.row.contains(one));
-    (like ?? this.actions[0])?.button.focus();
-  }
-
-  private action(label: string, act: () => Promise<void>, usual: string, primary = false, whyNot = (): string => this.whyNot()): Action {
-    const press = (): void => {
-      this.pressed = label;
-      void this.attempt(act);
-    };
-    return { button: button(label, press, primary ? { class: "primary" } : {}), whyNot, usual };
-  }
-
-  /** Runs what a person asked for; an error stands in the step. */
-  private async attempt(act: () => Promise<void>): Promise<void> {
-    setText(this.problem, "");
-    try {
-      await act();
-    } catch (error) {
-      setText(this.problem, sentenceOf(error));
-    }
-    this.refresh();
-    this.keepFocus();
-  }
-
-  /** Does something during which nothing else can be done. */
-  private async alone(what: string, act: () => Promise<void>): Promise<void> {
-    this.busy = what;
-    this.refresh();
-    try {
-      await act();
-    } finally {
-      this.busy = "";
-    }
+    this.panel.show(title, asked, body, actions, this.stepButtons());
   }
 
   private stepButtons(): Action[] {
@@ -165,7 +94,7 @@ export class CalibrateView implements View {
     const actions = (walk?.steps ?? []).map((step, at) => {
       const title = stepTitle(step);
       const [group, short] = stepInGroup(step);
-      const one = this.action(short, async () => this.go(at), `Go to this step: ${title}`, false, () => this.whyNot() || walk!.whyNot(at));
+      const one = this.panel.action(short, async () => this.go(at), `Go to this step: ${title}`, false, () => this.panel.whyNot() || walk!.whyNot(at));
       one.button.setAttribute("aria-label", walk!.isDone(step) ? `${title}, done` : title);
       one.button.dataset["done"] = String(walk!.isDone(step));
       if (at === walk!.at) one.button.setAttribute("aria-current", "step");
@@ -176,8 +105,6 @@ export class CalibrateView implements View {
     this.list.replaceChildren(...groups.values());
     return actions;
   }
-
-  // --- the way ------------------------------------------------------------------------------------------------------
 
   private showBeginning(said = ""): void {
     this.walk = null;
@@ -194,10 +121,10 @@ export class CalibrateView implements View {
         el("label", { class: "row" }, "Second pose", second), length,
         el("p", { class: "quiet" }, this.hands ? BY_HANDS : "Only joints in use are asked for; `greywhale calibrate --joints` in a terminal changes which those are."),
       ], [
-        this.action("Begin", () => this.begin(second.value === "same" ? DEGREE * Number(track.value) : null), "Begin with the first sweep", true),
-        ...(this.stored ? [this.action("Undo", () => this.undo(), "Run and store the parameters from before this calibration")] : []),
+        this.panel.action("Begin", () => this.begin(second.value === "same" ? DEGREE * Number(track.value) : null), "Begin with the first sweep", true),
+        ...(this.stored ? [this.panel.action("Undo", () => this.undo(), "Run and store the parameters from before this calibration")] : []),
       ]);
-    void this.attempt(() => this.showEarlier());
+    void this.panel.attempt(() => this.showEarlier());
   }
 
   /** Below the beginning, if any was kept. */
@@ -206,12 +133,12 @@ export class CalibrateView implements View {
     const found = await this.kept.list();
     if (this.walk || !found.length) return;
     const usual = "Run and store it; controllers and everything else stay";
-    const list = earlierList(found, (one) => void this.attempt(() => this.goBack(one)), (made) => {
-      this.actions = [...this.actions, { button: made, whyNot: () => this.whyNot(), usual }];
+    const list = earlierList(found, (one) => void this.panel.attempt(() => this.goBack(one)), (made) => {
+      this.panel.add({ button: made, whyNot: () => this.panel.whyNot(), usual });
     });
-    this.body.querySelector(".earlier")?.remove();
-    this.body.append(list);
-    this.refresh();
+    this.panel.body.querySelector(".earlier")?.remove();
+    this.panel.body.append(list);
+    this.panel.refresh();
   }
 
   private async goBack(one: KeptCalibration): Promise<void> {
@@ -223,7 +150,7 @@ export class CalibrateView implements View {
 
   /** Runs and stores a set, and keeps the calibrations before and after. */
   private async storeKept(before: readonly number[], after: readonly number[], why: "page" | "back"): Promise<void> {
-    await this.alone("The board stores it.", async () => {
+    await this.panel.alone("The board stores it.", async () => {
       const { board } = this.session.hello!;
       await this.kept.keep(before, board, "found");
       await this.session.apply(after);
@@ -233,7 +160,7 @@ export class CalibrateView implements View {
   }
 
   private async begin(track: number | null): Promise<void> {
-    await this.alone("The rules are on their way.", async () => {
+    await this.panel.alone("The rules are on their way.", async () => {
       this.rules ??= await Rules.load(await this.code().catch(() => { throw new LinkError(NO_RULES); }));
       this.walk = new Walk(this.session, this.rules, await this.session.readParameters(), track);
       this.known = track === null;
@@ -255,27 +182,27 @@ export class CalibrateView implements View {
     if (step.kind === "sweep") this.showSweep(step.pot);
     else if (step.kind === "pose") this.showPose(step.place);
     else if (step.kind === "motors") this.showMotors();
-    else void this.attempt(() => this.showFound());
+    else void this.panel.attempt(() => this.showFound());
   }
 
   /** "Back", and the same step again. */
   private ways(): Action[] {
     const { at } = this.walk!;
     return [
-      this.action("Again", async () => this.go(at), "Begin this step anew"),
-      this.action("Back", async () => (at ? this.go(at - 1) : this.showBeginning()), "The step before"),
+      this.panel.action("Again", async () => this.go(at), "Begin this step anew"),
+      this.panel.action("Back", async () => (at ? this.go(at - 1) : this.showBeginning()), "The step before"),
     ];
   }
 
   /** What the bench's hands do in a step, and then the step is done. */
   private byHands(label: string, wish: () => HandsWish, done: () => Promise<void>, usual: string): Action[] {
     const { hands, walk } = this;
-    return hands ? [this.action(label, async () => {
+    return hands ? [this.panel.action(label, async () => {
       if (hands.areBusy && !this.mends) return; // a second press would begin anew
       if (this.mends) this.go(walk!.at);
       const going = hands.do(wish());
-      setText(this.asked, "The bench's hands do it.");
-      if (await going) await this.attempt(done);
+      this.panel.ask("The bench's hands do it.");
+      if (await going) await this.panel.attempt(done);
     }, usual)] : [];
   }
 
@@ -293,9 +220,9 @@ export class CalibrateView implements View {
     this.picture.setAttribute("aria-label", `The positive way of joint ${joint}`);
     const done = (): Promise<void> => this.endSweep(pot);
     this.showPanel(`Sweep ${this.place(walk!.step)}: ${jointTitle(pot)}`, upperFirst(rules!.turnAsked(pot % JOINTS)), [], [
-      this.action("Done", done, "The joint was turned to both ends", true),
+      this.panel.action("Done", done, "The joint was turned to both ends", true),
       ...this.ways(),
-      this.action("Later", async () => {
+      this.panel.action("Later", async () => {
         walk!.later();
         this.showStep();
       }, "Put this sweep behind the others"),
@@ -309,15 +236,13 @@ export class CalibrateView implements View {
     const walk = this.walk!;
     if (this.mends) return this.go(walk.at);
     let mistake = "";
-    await this.alone("The sweep is looked at.", async () => { mistake = await walk.takeSweep(pot); });
+    await this.panel.alone("The sweep is looked at.", async () => { mistake = await walk.takeSweep(pot); });
     if (!mistake) return this.goOn();
     this.hands?.letGo();
     this.mends = true;
-    setText(this.problem, mistake);
-    setText(this.asked, "Mend it, or turn the right joint; then comes this sweep again.");
-    const [goOn, again] = this.actions;
-    setText(goOn!.button, "Again");
-    again!.button.hidden = true;
+    this.panel.tell(mistake);
+    this.panel.ask("Mend it, or turn the right joint; then comes this sweep again.");
+    this.panel.offerAgain();
   }
 
   private goOn(): void {
@@ -337,13 +262,13 @@ export class CalibrateView implements View {
       return el("label", { class: "factor" }, `${joint} ${JOINT_NAMES[joint]!}, degrees`, input);
     }) : [];
     const done = async (): Promise<void> => {
-      await this.alone("The pose is looked at.", () => walk.takePose(place, given(Math.min(place, SECOND))));
+      await this.panel.alone("The pose is looked at.", () => walk.takePose(place, given(Math.min(place, SECOND))));
       this.goOn();
     };
     const held = (): number[] => (place === THIRD ? THIRD_RAD : given(place === AGAIN ? FIRST : place));
     this.showPanel(`Pose ${this.place(walk.step)}: ${stepTitle(walk.step)}`, poseAsked(place, poseInWords(given(FIRST), walk.joints), this.known),
       inputs.length ? [el("div", { class: "factors" }, ...inputs)] : [], [
-        this.action("Take the pose", done, "Both arms are held still in it", true),
+        this.panel.action("Take the pose", done, "Both arms are held still in it", true),
         this.ways()[1]!,
         ...this.byHands("Let the bench's hands do it", () => ({ pose: held() }), done, "They hold both arms in this pose"),
       ]);
@@ -361,16 +286,16 @@ export class CalibrateView implements View {
       el("ul", { class: "differences", attrs: { "aria-label": "Motors" } }, ...results),
       el("p", { class: "problem" }, this.rules!.remarks(tried, supply)),
     ], walk.isDone(walk.step) ? [
-      this.action("Go on", async () => this.goOn(), "See what was found", true),
-      this.action("Try them again", async () => {
+      this.panel.action("Go on", async () => this.goOn(), "See what was found", true),
+      this.panel.action("Try them again", async () => {
         walk.motors.clear();
         walk.motorsLeft = false;
         this.showMotors();
       }, "All motors get pulses again"),
       this.ways()[1]!,
     ] : [
-      this.action(tried.length ? "Try the other motors" : "Try the motors", pulses, "Each gets short weak pulses, after a countdown", true),
-      this.action("Leave the motors as they are", async () => {
+      this.panel.action(tried.length ? "Try the other motors" : "Try the motors", pulses, "Each gets short weak pulses, after a countdown", true),
+      this.panel.action("Leave the motors as they are", async () => {
         walk.motorsLeft = true;
         this.goOn();
       }, "Their directions stay; nothing moves"),
@@ -382,11 +307,11 @@ export class CalibrateView implements View {
   private async tryMotors(): Promise<void> {
     const { walk, session, rules } = this;
     try {
-      await this.alone("The motors get pulses; Stop ends them.", async () => {
+      await this.panel.alone("The motors get pulses; Stop ends them.", async () => {
         if (!await this.countdown.before("The arm is about to get pulses of its motors")) throw new LinkError(NOT_TRIED);
         let stops = session.stopsAsked; // with those by which a trial itself ends
         for (const joint of walk!.joints.filter((one) => !walk!.motors.has(one))) {
-          setText(this.asked, `Motor ${walk!.joints.indexOf(joint) + 1} of ${walk!.joints.length}, joint ${joint}, ${JOINT_NAMES[joint]!}, gets pulses.`);
+          this.panel.ask(`Motor ${walk!.joints.indexOf(joint) + 1} of ${walk!.joints.length}, joint ${joint}, ${JOINT_NAMES[joint]!}, gets pulses.`);
           const { before, after } = await walk!.found();
           if (session.stopsAsked !== stops) throw new LinkError(STOPPED);
           walk!.motors.set(joint, await new Trial(session, rules!, before, after, joint).run());
@@ -402,8 +327,8 @@ export class CalibrateView implements View {
     const walk = this.walk!;
     const found = await walk.found();
     this.showPanel("Store this?", "What was found neither runs nor is stored yet.", [foundTables(found, walk.joints, walk.motors)], [
-      this.action("Yes, store it", () => this.store(found), "Run it, and write it to the board's memory", true),
-      this.action("No", async () => this.showBeginning("Nothing was stored."), "Keep what runs"),
+      this.panel.action("Yes, store it", () => this.store(found), "Run it, and write it to the board's memory", true),
+      this.panel.action("No", async () => this.showBeginning("Nothing was stored."), "Keep what runs"),
       this.ways()[1]!,
     ]);
   }
@@ -413,10 +338,10 @@ export class CalibrateView implements View {
     this.stored = found;
     this.showBeginning();
     this.showPanel("Stored", "The board is calibrated. An arm file needs these potentiometers too: greywhale arm match arm.toml", [], [
-      this.action("Undo", () => this.undo(), "Run and store the parameters from before"),
-      this.action("Save the parameters from before", async () => download("before-calibration.toml", parameterFile(found.before), "application/toml"),
+      this.panel.action("Undo", () => this.undo(), "Run and store the parameters from before"),
+      this.panel.action("Save the parameters from before", async () => download("before-calibration.toml", parameterFile(found.before), "application/toml"),
         "As a file that greywhale params restore takes", false, () => ""),
-      this.action("Calibrate again", async () => this.showBeginning(), "Begin anew"),
+      this.panel.action("Calibrate again", async () => this.showBeginning(), "Begin anew"),
     ]);
   }
 
