@@ -360,7 +360,6 @@ export class Session {
 
   private async fetchHistory(from: number | null): Promise<void> {
     const before = this.samples.end;
-    console.log(`HIST begin from ${from} last ${this.samples.lastTick} waiting ${this.waiting?.length} t ${performance.now().toFixed(0)}`);
     try {
       const frames = await this.board.history(from);
       new FrameDecoder().feed(frames, ({ type, payload }) => {
@@ -368,7 +367,6 @@ export class Session {
       });
       if (from === null) this.samples.lost = 0;
     } finally {
-      console.log(`HIST end got ${this.samples.end - before} last ${this.samples.lastTick} waiting ${this.waiting?.length} first waiting ${this.waiting?.length ? tickOf(this.waiting[0]!) : 0} t ${performance.now().toFixed(0)}`);
       this.takeWaiting(this.samples.end > before);
     }
   }
