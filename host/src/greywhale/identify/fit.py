@@ -6,7 +6,6 @@ from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import least_squares
 from threadpoolctl import threadpool_limits
 
 from greywhale.base.types import Floats
@@ -28,6 +27,8 @@ def least_squares_fit(
     It ends after `most_steps` steps, or when a step gains little. `moves` (numbers of the residual, searched numbers)
     says what changes what; other derivatives are taken as 0, so that several numbers can be varied in one simulation.
     """
+    from scipy.optimize import least_squares  # slow to import, and a dashboard needs the models alone
+
     low, high = space.bounds()
     inside = np.clip(start, low + 1e-9, high - 1e-9)
     steps = space.steps * step_scale
