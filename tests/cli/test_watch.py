@@ -17,9 +17,9 @@ import pytest
 from greywhale.board.device import Device
 from greywhale.board.upload import read_parameters
 from greywhale.cli import entry
-from greywhale.cli.watch import HEADING, SAMPLE_EVERY_TICKS, Look, Torques, as_line, as_table, looks
+from greywhale.cli.watch import HEADING, SAMPLE_EVERY_TICKS, Look, as_line, as_table, looks
 from greywhale.files.arm import load_arm
-from greywhale.observe import Sight
+from greywhale.observe import Sight, Told
 from greywhale.protocol import schema
 from greywhale.protocol.schema import Fault, State
 from tests.board.fake_board import FakeBoard, Faults
@@ -46,7 +46,7 @@ def test_a_table_says_what_there_is() -> None:
 def test_a_table_says_what_pushes_from_outside_where_it_can_be_told() -> None:
     sights = np.array([Sight.TOLD, Sight.RESTING, Sight.IN_GAP, Sight.TOLD], dtype=np.uint8)
     sizes = np.array([0.5, 0.0, 0.0, -12.25]), np.array([0.25, 1.0, 1.0, 2.0])
-    look = replace(LOOK, outside=Torques(*sizes, sights, np.array([False, False, False, True])))
+    look = replace(LOOK, outside=Told(*sizes, sights, np.array([False, False, False, True])))
     lines = as_table(look).splitlines()
     assert [line[62:].strip() for line in lines[2:8]] == [
         *("outside", "N m", "+0.50 ±0.25", "at rest", "in its gap", "contact -12.25")

@@ -15,7 +15,17 @@ from greywhale.cli import entry
 from greywhale.files.arm import load_arm
 from greywhale.files.log import Log
 from greywhale.loop import human_reaches
-from greywhale.observe import ExternalTorque, Sight, estimate_external_torque
+from greywhale.observe import (
+    LIVE_EVERY_TICKS,
+    ExternalTorque,
+    Sight,
+    Told,
+    contacts_in,
+    estimate_external_torque,
+    live_torque,
+)
+from greywhale.protocol import schema
+from greywhale.protocol.joints import ALL
 from tools.support.pushed_arm import OwnPlant, Push, judge, record_pushed, some_pushes
 from tools.support.recordings import record, table_of
 
@@ -98,6 +108,29 @@ def test_every_fourth_sample_tells_much_the_same(pushed: Log, found: ExternalTor
     assert both.sum() > 500
     stall = [model.actuator(joint).torque_per_volt * model.drive.supply for joint in range(4)]
     assert np.sqrt(np.mean(((slow.torque - found.torque[::4]) / stall)[both] ** 2)) < 0.05
+
+
+def test_a_lost_sample_of_a_board_is_no_contact(pushed: Log, pushes: list[Push], model: ArmParameters) -> None:
+    """Some are lost before most pushes, while the arm moves; and a board's samples come a few at a time."""
+    rows = np.arange(0, len(pushed.time), LIVE_EVERY_TICKS)
+    lost = [round(1000 * one.begin) - 100 for one in pushes[1:]]
+    rows = rows[~np.any([(rows >= first) & (rows < first + 40) for first in lost], axis=0)]
+    samples = [_sample(pushed, row) for row in rows]
+    live = live_torque(model, table_of("before_tuning")["filter_shift"])
+    pieces = [live.feed_samples(samples[first : first + 10]) for first in range(0, len(samples), 10)]
+    told = Told(*(np.concatenate(column) for column in zip(*pieces, strict=True)))
+    assert [one.joint for one in contacts_in(pushed.time[rows], told, ALL)] == [one.joint for one in pushes]
+    assert len(lost) > 5
+
+
+def _sample(log: Log, row: int) -> schema.Sample:
+    """A row as the board sent it; nobody asks where its leader is."""
+    follower, voltage = (
+        tuple(np.rint(values[row] / schema.Sample.LSB[name]).astype(int).tolist())
+        for name, values in (("follower", log.follower), ("voltage", log.voltage))
+    )
+    tick = round(1000 * log.time[row])
+    return schema.Sample(tick, schema.State.FOLLOWING, schema.Fault.NONE, (0, 0, 0, 0), follower, voltage)
 
 
 def test_an_arm_file_that_was_not_identified_is_refused(pushed: Log) -> None:

@@ -131,13 +131,15 @@ void Ensemble::step(double time_s, const Four& angles, const Four& volts, Seen (
       seen[i] = {0.0, known_width(i) + arms_[0].held(i), Sight::turning, false};
     }
     fresh_ = false;
+    begun_s_ = 0.0;
   } else {
+    begun_s_ += dt;
     for (Observer& one : arms_) one.step(dt, angles, volts_, limits_.filter_s, delay_s_);
     for (std::size_t i = 0; i < kJoints; ++i) {
       const Sight sight = look(i, dt);
       const double held = sight == Sight::told ? 0.0 : arms_[0].held(i);
       seen[i] = {arms_[0].torque(i), known_width(i) + held, sight, false};
-      judge_contact(i, dt, seen[i]);
+      if (begun_s_ >= limits_.begin_s) judge_contact(i, dt, seen[i]);
     }
   }
   time_s_ = time_s;
@@ -160,7 +162,7 @@ Sight Ensemble::look(std::size_t i, double dt) {
     return Sight::at_stop;
   if (direction == 0) return Sight::resting;
   if (apart) return Sight::in_gap;
-  return track.known_s < limits_.settle_s ? Sight::turning : Sight::told;
+  return track.known_s < limits_.settle_s || begun_s_ < limits_.begin_s ? Sight::turning : Sight::told;
 }
 
 double Ensemble::moving_speed(std::size_t i) const {

@@ -113,7 +113,7 @@ class Ensemble {
   double delay_s_;
   Track tracks_[kJoints];
   Four volts_ = {};
-  double time_s_ = 0.0;
+  double time_s_ = 0.0, begun_s_ = 0.0;
   bool fresh_ = true;
 };
 

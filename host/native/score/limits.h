@@ -76,6 +76,7 @@ struct TorqueLimits {
   double scale_share;
   double loaded_share;
   double stop_rad;
+  double begin_s;
   double restart_s;
   double slow_spreads;
   double play_share;

@@ -10,14 +10,6 @@ from greywhale.observe import ExternalTorque, Sight
 from greywhale.protocol.joints import Joints
 
 SHOWN_CONTACTS = 8  # the others are counted
-WORDS = {
-    Sight.TURNING: "turning",
-    Sight.RESTING: "at rest",
-    Sight.IN_GAP: "in its gap",
-    Sight.AT_STOP: "at a stop",
-    Sight.UNUSED: "not in use",
-    Sight.OFF: "motors off",
-}
 _COLUMNS = (
     Column("", width=7, left=True),
     Column("outside\ntorque", "N m rms", 16),
@@ -52,4 +44,4 @@ def cell(torque: float, half_width: float, sight: int, contact: bool) -> str:
     """One joint at one moment: a torque with its interval, or why it cannot be told; a contact in any case."""
     if contact:
         return f"contact {torque:+.2f}"
-    return f"{torque:+.2f} ±{half_width:.2f}" if sight == Sight.TOLD else WORDS[Sight(sight)]
+    return Sight(sight).words or f"{torque:+.2f} ±{half_width:.2f}"

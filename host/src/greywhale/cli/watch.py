@@ -23,16 +23,15 @@ from greywhale.arm import ArmParameters
 from greywhale.board.device import Device
 from greywhale.board.pots import FULL_SCALE, PotReadings, counts_of, pots_there
 from greywhale.board.refusal import fault_text
-from greywhale.board.stream import Received, stream
+from greywhale.board.stream import stream
 from greywhale.cli import torque
-from greywhale.observe import LiveTorque, Sight
+from greywhale.observe import LIVE_EVERY_TICKS, Sight, Told, live_torque
 from greywhale.protocol import schema
 from greywhale.protocol.firmware import ANGLE_LSB, JOINTS
 from greywhale.protocol.joints import ALL, Joints
 from greywhale.protocol.table import ParameterTable
 
 SAMPLE_EVERY_TICKS = 50  # 20 samples a second
-TORQUE_EVERY_TICKS = 4  # an outside torque needs more, of which as many are shown
 WIDTH_COLUMNS = 80  # of the smallest usual terminal
 MOST_COMPLAINTS = 2  # shown; the others are counted
 _REFRESH_S = 0.1  # of the table, by this machine's clock
@@ -40,16 +39,6 @@ _LINE_TICKS = 1000  # between two lines, by the board's
 _GROUPS = ("leader", "follower", "error", "voltage")
 TORQUES = [f"{group}_{joint}" for group in ("torque", "torque_known_to", "contact") for joint in range(JOINTS)]
 HEADING = ",".join(["time_s", "state", "fault", *(f"{group}_{joint}" for group in _GROUPS for joint in range(JOINTS))])
-
-
-@dataclass(frozen=True)
-class Torques:
-    """Outside torques of one moment (4,): N m, half widths of their intervals, what can be told, contacts."""
-
-    torque: npt.NDArray[np.float64]
-    half_width: npt.NDArray[np.float64]
-    sight: npt.NDArray[np.uint8]
-    contact: npt.NDArray[np.bool_]
 
 
 @dataclass(frozen=True)
@@ -64,7 +53,7 @@ class Look:
     fault: str  # in words with its remedy, "" for none
     lost: int  # samples so far
     joints: Joints = ALL  # in use
-    outside: Torques | None = None  # with a model
+    outside: Told | None = None  # with a model; (4,) each
 
     @property
     def leader(self) -> npt.NDArray[np.float64]:
@@ -101,11 +90,11 @@ def watch(
 def looks(device: Device, table: ParameterTable, model: ArmParameters | None = None) -> Iterator[Look]:
     """Yield a look at the board's newest sample, again and again, without end."""
     fault, fault_words, lost, due = schema.Fault.NONE, "", 0, 0
-    every = SAMPLE_EVERY_TICKS if model is None else TORQUE_EVERY_TICKS
-    outside = None if model is None else _Outside(model, table)
+    every = SAMPLE_EVERY_TICKS if model is None else LIVE_EVERY_TICKS  # of which as many are shown
+    outside = None if model is None else live_torque(model, table["filter_shift"])
     for one in stream(device, every):
         lost += one.lost
-        seen = None if outside is None else outside.take(one)
+        seen = None if outside is None else Told(*(rows[0] for rows in outside.feed_samples([one.sample])))
         if one.elapsed < due and one.sample.fault is fault:
             continue
         due = one.elapsed + SAMPLE_EVERY_TICKS - every // 2
@@ -118,26 +107,6 @@ def looks(device: Device, table: ParameterTable, model: ArmParameters | None = N
         yield Look(
             device.port, one.elapsed, one.sample, counts[0], complaints, fault_words, lost, table.joints_in_use, seen
         )
-
-
-class _Outside:
-    """Outside torques from sample to sample."""
-
-    def __init__(self, model: ArmParameters, table: ParameterTable) -> None:
-        self._live = LiveTorque(model, table["filter_shift"], TORQUE_EVERY_TICKS / 1000)
-
-    def take(self, one: Received) -> Torques:
-        if one.sample.state is not schema.State.FOLLOWING:
-            self._live.restart()
-        angles, volts = (
-            np.array([values]) * schema.Sample.LSB[name]
-            for name, values in (("follower", one.sample.follower), ("voltage", one.sample.voltage))
-        )
-        rows = (values[0] for values in self._live.feed(np.array([one.elapsed / 1000]), angles, volts))
-        found = Torques(*rows)
-        if one.sample.state is not schema.State.FOLLOWING:
-            found.sight[:] = Sight.OFF
-        return found
 
 
 def as_table(look: Look) -> str:

@@ -4,6 +4,28 @@
 >>> found.contacts
 """
 
-from greywhale.observe.torque import Contact, ExternalTorque, LiveTorque, Sight, estimate_external_torque
+from greywhale.observe.torque import (
+    LIVE_EVERY_TICKS,
+    Contact,
+    ContactFacts,
+    ExternalTorque,
+    LiveTorque,
+    Sight,
+    Told,
+    contacts_in,
+    estimate_external_torque,
+    live_torque,
+)
 
-__all__ = ["Contact", "ExternalTorque", "LiveTorque", "Sight", "estimate_external_torque"]
+__all__ = [
+    "LIVE_EVERY_TICKS",
+    "Contact",
+    "ContactFacts",
+    "ExternalTorque",
+    "LiveTorque",
+    "Sight",
+    "Told",
+    "contacts_in",
+    "estimate_external_torque",
+    "live_torque",
+]

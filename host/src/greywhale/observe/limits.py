@@ -37,6 +37,9 @@ class TorqueLimits:
         0.02, "of the stall torque", "teeth that pass on less may be apart, if there is a gap", MEASURED_ON_ARMS
     )
     stop_rad: float = limit(0.02, "rad", "a joint that is nearer to its stop may lean on it")
+    begin_s: float = limit(
+        0.1, "s", "after a start nothing is told: a joint that moves then looks as if it were struck", MEASURED_ON_ARMS
+    )
     restart_s: float = limit(0.1, "s", "after a longer gap in the samples all begins anew")
     slow_spreads: float = limit(4.0, "times the moving speed", "a slower joint may be turning within its play")
     play_share: float = limit(1.5, "of the play", "it may cross so much unseen: play is found to a third or so")

@@ -8,9 +8,10 @@ and doubts about friction and motor. Sources: De Luca and Mattone 2003 (the obse
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from enum import IntEnum
-from typing import Any, TypedDict
+from typing import Any, NamedTuple, TypedDict
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,9 +24,13 @@ from greywhale.files.log import Log
 from greywhale.files.log.driven import driven_rows
 from greywhale.measure.runs import stretches
 from greywhale.observe.limits import TORQUE_LIMITS, TorqueLimits
+from greywhale.protocol import schema
 from greywhale.protocol.firmware import CONVERSIONS, JOINTS, TICK_S
+from greywhale.protocol.joints import Joints
 from greywhale.protocol.table import ParameterTable
 
+LIVE_EVERY_TICKS = 4  # between samples that are looked at live: each tick would tell much the same
+_LOST = 1.5  # times the spacing: one was lost
 ARMS = 12  # that could have made the log; more would only take longer
 
 
@@ -39,6 +44,21 @@ class Sight(IntEnum):
     AT_STOP = 4
     UNUSED = 5
     OFF = 6  # the motors do not follow
+
+    @property
+    def words(self) -> str:
+        """The reason why a torque cannot be told, in words for people; "" where it can."""
+        return _WORDS.get(self, "")
+
+
+_WORDS = {
+    Sight.TURNING: "turning",
+    Sight.RESTING: "at rest",
+    Sight.IN_GAP: "in its gap",
+    Sight.AT_STOP: "at a stop",
+    Sight.UNUSED: "not in use",
+    Sight.OFF: "motors off",
+}
 
 
 class ContactFacts(TypedDict):
@@ -120,6 +140,15 @@ class ExternalTorque:
         }
 
 
+class Told(NamedTuple):
+    """Torques from outside and half widths of their intervals, N m, sights (`Sight`) and contacts: (n, 4) each."""
+
+    torque: Floats
+    half_width: Floats
+    sight: NDArray[np.uint8]
+    contact: NDArray[np.bool_]
+
+
 class LiveTorque:
     """Torques of samples as they come. Raises UserError where the arm is no identified model."""
 
@@ -133,20 +162,45 @@ class LiveTorque:
         plants = np.ascontiguousarray(sampled_plants(arm, ARMS))
         delay = CONVERSION_S + TICK_S * ((1 << filter_shift) - 1)
         self._zero = zero_angles(arm)
+        self._driven = False  # at the last sample
         self._observer = _native.TorqueObserver(
             plants, numbers_in(limits), reading_noise(arm, filter_shift, spacing_s).tolist(), delay
         )
 
-    def restart(self) -> None:
-        """Forget the samples so far: the motors were off."""
-        self._observer.restart()
+    def feed(self, time: Floats, follower: Floats, voltage: Floats, driven: NDArray[np.bool_]) -> Told:
+        """Tell the torques of samples at (n,) s with (n, 4) rad and V; `driven` (n,) is true where the motors follow.
 
-    def feed(
-        self, time: Floats, follower: Floats, voltage: Floats
-    ) -> tuple[Floats, Floats, NDArray[np.uint8], NDArray[np.bool_]]:
-        """Torques and half widths (n, 4) N m, sights and contacts of samples at (n,) s with (n, 4) rad and V."""
-        rows = (np.ascontiguousarray(one, dtype=np.float64) for one in (follower + self._zero, voltage))
-        return self._observer.feed(np.ascontiguousarray(time, dtype=np.float64), *rows)
+        Whenever they begin to, the samples before are forgotten.
+        """
+        shape = follower.shape
+        told = Told(np.zeros(shape), np.zeros(shape), np.full(shape, Sight.OFF, np.uint8), np.zeros(shape, bool))
+        t, angles, volts = (np.ascontiguousarray(one, np.float64) for one in (time, follower + self._zero, voltage))
+        for start, stop in stretches(driven):
+            if start or not self._driven:
+                self._observer.restart()
+            rows = slice(start, stop)
+            found = self._observer.feed(t[rows], angles[rows], volts[rows])
+            told.torque[rows], told.half_width[rows], told.sight[rows], told.contact[rows] = found
+        self._driven = bool(driven[-1])
+        return told
+
+    def feed_samples(self, samples: Sequence[schema.Sample]) -> Told:
+        """Tell the torques of some samples of a board, one at least."""
+        follower, voltage = (
+            np.array([getattr(one, name) for one in samples]) * schema.Sample.LSB[name]
+            for name in ("follower", "voltage")
+        )
+        driven = np.array([one.state is schema.State.FOLLOWING for one in samples])
+        return self.feed(TICK_S * np.array([one.tick for one in samples]), follower, voltage, driven)
+
+
+def live_torque(model: ArmParameters, filter_shift: int) -> LiveTorque:
+    """Begin to tell the torques of a board's samples, each `LIVE_EVERY_TICKS`; UserError as `LiveTorque`.
+
+    Where one was lost, all begins anew: nobody knows the voltages meanwhile, and a torque would stand for them.
+    """
+    spacing_s = LIVE_EVERY_TICKS * TICK_S
+    return LiveTorque(model, filter_shift, spacing_s, replace(TORQUE_LIMITS, restart_s=_LOST * spacing_s))
 
 
 def estimate_external_torque(log: Log, model: ArmParameters, limits: TorqueLimits = TORQUE_LIMITS) -> ExternalTorque:
@@ -157,20 +211,19 @@ def estimate_external_torque(log: Log, model: ArmParameters, limits: TorqueLimit
     """
     table = log.origin.table or ParameterTable.defaults()
     live = LiveTorque(model, table["filter_shift"], float(np.median(np.diff(log.time))), limits)
-    shape = log.follower.shape
-    torque, half = np.zeros(shape), np.zeros(shape)
-    sight, contact = np.full(shape, Sight.OFF, dtype=np.uint8), np.zeros(shape, dtype=bool)
-    for start, stop in stretches(driven_rows(log)):
-        live.restart()
-        rows = slice(start, stop)
-        told = live.feed(log.time[rows], log.follower[rows], log.voltage[rows])
-        torque[rows], half[rows], sight[rows], contact[rows] = told
+    told = live.feed(log.time, log.follower, log.voltage, driven_rows(log))
+    contacts = contacts_in(log.time, told, log.joints_in_use)
+    return ExternalTorque(model.name, told.torque, told.half_width, told.sight, contacts)
+
+
+def contacts_in(time: Floats, told: Told, joints: Joints) -> tuple[Contact, ...]:
+    """The contacts of these joints in what was told of samples at (n,) s, in the order in which they began."""
     contacts = [
-        _contact(joint, log.time, torque[:, joint], first, behind)
-        for joint in log.joints_in_use
-        for first, behind in stretches(contact[:, joint])
+        _contact(joint, time, told.torque[:, joint], first, behind)
+        for joint in joints
+        for first, behind in stretches(told.contact[:, joint])
     ]
-    return ExternalTorque(model.name, torque, half, sight, tuple(sorted(contacts, key=lambda one: one.time)))
+    return tuple(sorted(contacts, key=lambda one: one.time))
 
 
 def _contact(joint: int, time: Floats, torque: Floats, first: int, behind: int) -> Contact:
