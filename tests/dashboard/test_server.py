@@ -147,6 +147,15 @@ def test_a_body_that_comes_in_pieces_breaks_off_where_it_is_too_long() -> None:
     assert got == ["http.request", "http.disconnect"]
 
 
+def test_a_file_that_tells_no_torques_is_refused_with_the_verbs_sentence(page: Page) -> None:
+    with page.open("/torque?file=default&filter_shift=1") as socket:
+        said = socket.take()
+        assert isinstance(said, str)
+        assert "use a model.toml of greywhale identify" in json.loads(said)["error"]
+        with pytest.raises(ConnectionError):
+            socket.take()
+
+
 def test_a_message_that_is_not_known_ends_the_connection(page: Page) -> None:
     for message in ({"kind": "dance"}, {"kind": 1}, {}):
         with page.open("/board") as socket:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 from collections.abc import Callable
 from pathlib import Path
 
@@ -14,12 +15,29 @@ from greywhale.files.log.check import Check
 from greywhale.protocol.schema import Sample, State
 from tests.page import stage as stages
 from tests.page.stage import Stage, await_state
+from tools import ROOT
 
 pytestmark = pytest.mark.slow
 
 LEAST_LOG = 1500  # samples
 ROUNDED = 0.51e-3  # what is shown with three digits may be off by so much
 OFF_TICKS = 300
+MODEL = ROOT / "tests/observe/default_model.toml"
+PUSH_NM = 0.7  # that the motor holds against
+# A browser's sound, of which the pitches are kept.
+STUB = """() => {
+  window.tones = [];
+  window.AudioContext = class {
+    state = "running"; currentTime = 0; destination = {};
+    createGain() {
+      return { gain: { setValueAtTime() {}, linearRampToValueAtTime() {} }, connect: (next) => next };
+    }
+    createOscillator() {
+      const frequency = {};
+      return { frequency, connect: (next) => next, start: () => tones.push(frequency.value), stop() {} };
+    }
+  };
+}"""
 
 
 def start(page: Page, stage: Stage) -> None:
@@ -148,6 +166,32 @@ def test_the_clutch_is_disengaged_by_a_click_and_by_the_pedal(page: Page, stage:
     stage.command("clutch press")
     stage.live(0.1)
     expect(card).to_contain_text("The reference rests")
+
+
+def test_a_push_is_shown_told_and_sounded_by_a_model_of_the_folder(page: Page, stage: Stage) -> None:
+    card = page.locator(".torque")
+    expect(page.get_by_role("heading", name="Episodes")).to_be_visible()
+    expect(card).to_be_hidden()  # there is no model
+    shutil.copy(MODEL, stage.folder / "model.toml")
+    page.get_by_role("button", name="Parameters").click()
+    page.get_by_role("button", name="Live").click()
+    page.evaluate(STUB)
+    sound = card.get_by_role("button", name="Sound")
+    expect(sound).to_have_attribute("aria-pressed", "false")
+    sound.click()
+    start(page, stage)
+    expect(card.locator("td").first).not_to_have_text("–")  # the server has begun to listen
+    stage.command(f"push 0 {PUSH_NM}")
+    expect(card.locator('tr[data-contact="yes"]')).to_contain_text("contact +")
+    expect(card.locator("[aria-live]")).to_contain_text("Contact: joint 0 at")
+    page.wait_for_function("() => tones.length > 0", polling=50)
+    assert page.evaluate("tones[0]") == 330
+    stage.command("push 0 0")
+    expect(card.locator("[aria-live]")).to_contain_text("Last contact: joint 0 at")
+    page.get_by_role("button", name="Stop").click()
+    expect(card.locator("td").first).to_have_text("motors off")
+    sound.click()
+    expect(sound).to_have_attribute("aria-pressed", "false")
 
 
 def test_without_a_board_the_page_says_what_to_do_and_takes_one_that_comes(

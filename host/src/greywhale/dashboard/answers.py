@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, TypedDict, TypeGuard
 
 from greywhale import __version__
@@ -21,6 +23,7 @@ from greywhale.dashboard.jobs import Jobs
 from greywhale.dashboard.predict import predict  # here, for a server that imports later lets its board wait
 from greywhale.dashboard.relay import Relay
 from greywhale.dashboard.samples import samples_of_log
+from greywhale.dashboard.torque import PagesTorque, filter_shift_in
 from greywhale.files import controller, parameter_file
 from greywhale.files.arm import arm_names, load_arm
 from greywhale.files.paper_tables import controller_names, controller_path
@@ -40,6 +43,7 @@ class State(TypedDict):
     port: str  # "" while no board is there
     open: bool
     arm: str
+    identified: bool  # it is a model that was identified
     folder: str
     sim: bool
     follows: bool  # a page lets the simulated arm follow when it opens: its board is set up
@@ -109,6 +113,7 @@ class Answers:
             "port": link["port"],
             "open": link["open"],
             "arm": self.arm,
+            "identified": self._is_identified,
             "folder": str(self.folder.path),
             "sim": self.bench is not None,
             "follows": self.follows,
@@ -144,6 +149,10 @@ class Answers:
         if not (file is None or isinstance(file, str)):
             raise BadUsage("file must be the name of an arm or a model.")
         return predict(self._arm(file), table)
+
+    def torque(self, asked: Mapping[str, str]) -> PagesTorque:
+        """The torques from outside for a page, by the `file` of a model and the board's `filter_shift`."""
+        return PagesTorque(self._arm(asked.get("file")), filter_shift_in(asked))
 
     def calibrations(self) -> dict[str, Any]:
         """The calibrations that the board at the port has had, as far as they were kept."""
@@ -187,6 +196,10 @@ class Answers:
     def questions(self, asked: dict[str, Any]) -> dict[str, Any]:
         """The questions of `arm new` that follow from the `answers` so far."""
         return {"headings": arm_answers.questions(asked.get("answers"), self.folder)}
+
+    @cached_property
+    def _is_identified(self) -> bool:
+        return load_arm(self.arm).identification is not None
 
     def _arm(self, file: str | None) -> ArmParameters:
         if file is None or file == self.arm:

@@ -25,7 +25,7 @@ from greywhale.dashboard.connections import Server
 from greywhale.dashboard.door import Door
 from greywhale.dashboard.folder import IF_THERE, Folder, spool
 from greywhale.dashboard.guard import ENTRY, UPLOAD, Guard
-from greywhale.dashboard.sockets import serve_board, serve_host
+from greywhale.dashboard.sockets import serve_board, serve_host, serve_torque
 
 PAGE = Path(__file__).resolve().parent / "page"
 # Frames of the link are 50 bytes; a page sends some at once.
@@ -47,6 +47,7 @@ def application(answers: Answers, page: Path, access: Access, port: int) -> Guar
         Route(ENTRY, _entry(access), methods=["POST"]),
         WebSocketRoute("/board", partial(serve_board, relay=answers.relay)),
         WebSocketRoute("/host", partial(serve_host, jobs=answers.jobs)),
+        WebSocketRoute("/torque", partial(serve_torque, relay=answers.relay, begin=answers.torque)),
         Route("/history", _endpoint(lambda asked: answers.history(asked.get("from")))),
         Route("/state", _endpoint(lambda asked: answers.state())),
         Route("/arm", _endpoint(lambda asked: answers.describe_arm(asked.get("file")))),

@@ -1,14 +1,15 @@
-"""The WebSockets of a page: one carries a board's frames, unchanged, and one tells how the verbs go."""
+"""The WebSockets of a page: one carries a board's frames, unchanged; others tell how verbs go, and outside torques."""
 
 from __future__ import annotations
 
 import asyncio
 import contextlib
 import json
-from collections.abc import Callable
+from collections.abc import Awaitable, Callable, Mapping
 
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
+from greywhale.base.errors import UserError
 from greywhale.dashboard.bucket import Bucket
 from greywhale.dashboard.client import Client
 from greywhale.dashboard.guard import SUBPROTOCOL
@@ -16,9 +17,13 @@ from greywhale.dashboard.job import Facts
 from greywhale.dashboard.jobs import Jobs
 from greywhale.dashboard.outbox import Outbox
 from greywhale.dashboard.relay import Relay
+from greywhale.dashboard.torque import PagesTorque
+from greywhale.observe import LIVE_EVERY_TICKS
 
 # Samples of so long go out in one message.
 BATCH_S = 0.02
+# And torques so often: more, nobody sees or hears.
+TORQUE_S = 0.04
 # A page that drives sends a sign of life every 100 ms and, while it leads, a point every 16 ms.
 MESSAGES_A_SECOND, MESSAGES_AT_ONCE = 400.0, 2000.0
 _TOO_MANY, _NOT_UNDERSTOOD = 1008, 1003  # codes of RFC 6455 to close a WebSocket with
@@ -41,11 +46,11 @@ class Waiting:
         if urgent:
             self._urgent.set()
 
-    async def wait(self) -> None:
+    async def wait(self, batch_s: float = BATCH_S) -> None:
         """Until something is there; what is not urgent may gather for a moment."""
         await self._some.wait()
         with contextlib.suppress(TimeoutError):
-            await asyncio.wait_for(self._urgent.wait(), BATCH_S)
+            await asyncio.wait_for(self._urgent.wait(), batch_s)
         self._some.clear()
         self._urgent.clear()
 
@@ -121,12 +126,46 @@ async def serve_host(socket: WebSocket, jobs: Jobs) -> None:
     jobs.listeners.append(note)  # first, so that no change falls between
     for one in jobs.facts():
         changed.setdefault(one["id"], one)
-    telling = asyncio.create_task(tell())
     try:
-        while (await socket.receive())["type"] != "websocket.disconnect":
-            pass  # a page has nothing to say here
+        await _until_gone(socket, tell)
     finally:
         jobs.listeners.remove(note)
+
+
+async def serve_torque(socket: WebSocket, relay: Relay, begin: Callable[[Mapping[str, str]], PagesTorque]) -> None:
+    """Tell a page the torques from outside until it goes; where there are none, the reason in a sentence."""
+    await socket.accept(SUBPROTOCOL)
+    try:
+        torque = await asyncio.to_thread(begin, dict(socket.query_params))
+    except UserError as error:
+        await socket.send_text(json.dumps({"error": error.message}))
+        await socket.close()
+        return
+    waiting = Waiting()
+    client = Client(Outbox(waiting.notify))
+    client.every = LIVE_EVERY_TICKS
+
+    async def tell() -> None:
+        while True:
+            await waiting.wait(TORQUE_S)
+            _, samples = client.outbox.take()
+            if (told := await asyncio.to_thread(torque.take, samples)) is not None:
+                await socket.send_text(json.dumps(told))
+
+    relay.join(client)
+    try:
+        await _until_gone(socket, tell)
+    finally:
+        relay.leave(client)
+
+
+async def _until_gone(socket: WebSocket, tell: Callable[[], Awaitable[None]]) -> None:
+    """Do this until the page goes, which has nothing to say here."""
+    telling = asyncio.ensure_future(tell())
+    try:
+        while (await socket.receive())["type"] != "websocket.disconnect":
+            pass
+    finally:
         telling.cancel()
         with contextlib.suppress(asyncio.CancelledError, WebSocketDisconnect):
             await telling

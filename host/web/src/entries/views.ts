@@ -9,6 +9,7 @@ import { ConnectView } from "../views/connect/view";
 import { ControllerView } from "../views/controller/view";
 import { FilesView } from "../views/files/view";
 import { inFolder } from "../views/live/keep";
+import { TorquePanel } from "../views/live/torque_panel";
 import { LiveView } from "../views/live/view";
 import { ParametersView } from "../views/parameters/view";
 import { PotBars } from "../views/pots/bars";
@@ -76,7 +77,7 @@ export class Views {
     this.all = [
       new StartView(arm, beside, new Way(session, services, this.paths(), sources.docs)),
       ...(port ? [new ConnectView(session, port)] : []),
-      new LiveView(session, services ? inFolder(services) : undefined), this.controller, new ParametersView(session, calibrations),
+      new LiveView(session, services ? inFolder(services) : undefined, services && new TorquePanel(session, services)), this.controller, new ParametersView(session, calibrations),
       new CalibrateView(session, calibration, this.countdown, calibrations, bench),
       ...(this.verbs ? [this.verbs] : []),
       ...(services ? [new FilesView(session, services, (verb, given) => this.openVerb(verb, given))] : []),

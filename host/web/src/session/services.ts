@@ -8,6 +8,8 @@ export type NamedFile = { readonly name: string; readonly kind: string; readonly
 export type HostState = {
   readonly greywhale: string;
   readonly arm: string;
+  /** True if the arm is a model that was identified. */
+  readonly identified: boolean;
   readonly folder: string;
   readonly sim: boolean;
   /** True if a simulated arm may follow as soon as a page is open. */
@@ -66,6 +68,27 @@ export interface Predictor {
   readonly read?: (file: NamedText) => Model;
   /** Predicts a whole parameter set in raw values, on a board by its number. */
   predict(raw: readonly number[], board: number, model: Model): Promise<Prediction>;
+}
+
+/**
+ * The torque that acts on a joint from outside, N m, with half its 90 % interval. `why` says that it cannot be told, "" where
+ * it can; `share` is that of the motor's stall torque, without its sign.
+ */
+export type JointTorque = {
+  readonly torque_nm: number; readonly half_width_nm: number; readonly why: string; readonly contact: boolean; readonly share: number;
+};
+
+/** Something that touched a joint, seen at a tick of the board's; `torque_nm` is the largest so far. */
+export type ContactNow = {
+  readonly joint: number; readonly tick: number; readonly torque_nm: number; readonly lasted_s: number; readonly lasts: boolean;
+};
+
+/** The torques of a moment, and the last contact to begin. */
+export type OutsideTorque = { readonly joints: readonly JointTorque[]; readonly contact: ContactNow | null };
+
+export interface Torques {
+  /** Listens to what a model tells of the board's samples, by the board's filter_shift, until the result is called. */
+  listen(model: string, filterShift: number, heard: (told: OutsideTorque) => void, refused: (sentence: string) => void): () => void;
 }
 
 export type ArmDescription = {
@@ -243,6 +266,7 @@ export interface Services {
   /** The questions of `arm new` that follow from the answers so far. */
   questions(answers: ArmAnswers): Promise<readonly Heading[]>;
   readonly predictor: Predictor;
+  readonly torques: Torques;
   readonly tuner: Tuner;
   state(): Promise<HostState>;
   /** The samples of a log: payloads of the link's Sample, one after the other, ticks from the log's first row. */

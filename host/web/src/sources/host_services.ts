@@ -2,7 +2,7 @@
 
 import type {
   ArmAnswers, ArmDescription, Bench, Calibrations, Files, Heading, HostState, Job, Jobs, KeptCalibration, Model, Prediction, Predictor,
-  Services, Tuner, Verb,
+  OutsideTorque, Services, Torques, Tuner, Verb,
 } from "../session/services";
 import { HostTuner } from "./host_tuner";
 
@@ -48,18 +48,44 @@ export class HostServices implements Services {
     predict: (raw, board, { name }) => this.ask<Prediction>("POST", "/predict", { raw, board, file: name }),
   };
 
+  readonly torques: Torques = {
+    listen: (model, filterShift, heard, refused) => {
+      const path = `/torque?${new URLSearchParams({ file: model, filter_shift: String(filterShift) })}`;
+      let socket: WebSocket;
+      let over = false;
+      const open = (): void => {
+        if (over) return;
+        socket = this.open(path, (told: OutsideTorque | { readonly error: string }) => {
+          if (over) return;
+          over = "error" in told;
+          "error" in told ? refused(told.error) : heard(told);
+        }, open);
+      };
+      open();
+      return () => {
+        over = true;
+        socket.close();
+      };
+    },
+  };
+
   readonly tuner: Tuner = new HostTuner(this);
   private readonly listeners: Listener[] = [];
 
   constructor(private readonly token: string, private readonly page: () => string) {}
 
   private hear(): void {
-    const socket = new WebSocket(`ws://${location.host}/host`, ["greywhale", `token.${this.token}`]);
-    socket.addEventListener("message", ({ data }: MessageEvent<string>) => {
-      const job = JSON.parse(data) as Job & { readonly kind: "job" | "gone" };
+    this.open("/host", (job: Job & { readonly kind: "job" | "gone" }) => {
       for (const { heard, gone } of this.listeners) job.kind === "gone" ? gone(job.id) : heard(job);
-    });
-    socket.addEventListener("close", () => setTimeout(() => this.hear(), AGAIN_MS));
+    }, () => this.hear());
+  }
+
+  /** Opens a WebSocket that tells objects; a while after it has closed, `again` is called. */
+  private open<Told>(path: string, heard: (told: Told) => void, again: () => void): WebSocket {
+    const socket = new WebSocket(`ws://${location.host}${path}`, ["greywhale", `token.${this.token}`]);
+    socket.addEventListener("message", ({ data }: MessageEvent<string>) => heard(JSON.parse(data) as Told));
+    socket.addEventListener("close", () => setTimeout(again, AGAIN_MS));
+    return socket;
   }
 
   state(): Promise<HostState> {
@@ -108,11 +134,11 @@ function fileAddress(name: string): string {
 }
 
 /** What was identified comes first, then the dashboard's own arm and what else the folder has. */
-function modelsIn({ files, arm }: HostState): Model[] {
+function modelsIn({ files, arm, identified }: HostState): Model[] {
   const of = (wanted: string): readonly string[] => files.filter(({ kind, name }) => kind === wanted && name !== arm).map(({ name }) => name);
   return [
-    ...of("model").map((name) => ({ name, identified: true, says: `${name} is the arm as greywhale identify has found it.` })),
-    ...[arm, ...of("arm")].map((name) => ({ name, identified: false, says: `The arm ${name} as it is described; greywhale identify makes a model.toml of the arm itself.` })),
+    ...[...of("model"), ...(identified ? [arm] : [])].map((name) => ({ name, identified: true, says: `${name} is the arm as greywhale identify has found it.` })),
+    ...[...(identified ? [] : [arm]), ...of("arm")].map((name) => ({ name, identified: false, says: `The arm ${name} as it is described; greywhale identify makes a model.toml of the arm itself.` })),
   ];
 }
 

@@ -11,6 +11,7 @@ import { DOWNLOADS, keepLog, type Keeper } from "./keep";
 import { MeasuresTable } from "./measures_table";
 import { StatePanel } from "./state_panel";
 import { moveByKey, timeButtons } from "./time_buttons";
+import type { TorquePanel } from "./torque_panel";
 import { TriggerPanel } from "./trigger_panel";
 import { TimeWindow } from "./window";
 
@@ -32,7 +33,8 @@ export class LiveView implements View {
   private readonly record: HTMLButtonElement;
   private recordedFrom: number | null = null; // sample
 
-  constructor(private readonly session: Session, private readonly keeper: Keeper = DOWNLOADS) {
+  /** `torque` tells torques from outside, where a host can. */
+  constructor(private readonly session: Session, private readonly keeper: Keeper = DOWNLOADS, private readonly torque: TorquePanel | null = null) {
     this.record = button("Record", () => this.recordOrEnd(), { title: `Begin a log; its end ${keeper.where}` });
     this.window = new TimeWindow(session.samples);
     this.charts = new Charts([{ samples: session.samples, shade: (shades, joint) => shades.joints[joint]! }], this.window);
@@ -43,7 +45,7 @@ export class LiveView implements View {
       (seconds) => this.window.setSpan(Number(seconds) * TICKS_A_SECOND));
     this.element = el("div", { class: "live with-side" },
       el("div", { class: "live-main" }, this.tools(), this.charts.element, this.table()),
-      el("aside", { class: "side" }, this.episodes.element, new StatePanel(session).element, this.measures.element, this.trigger.element));
+      el("aside", { class: "side" }, ...(torque ? [torque.element] : []), this.episodes.element, new StatePanel(session).element, this.measures.element, this.trigger.element));
     this.window.changed.on(() => this.showWindow());
     themeChanged.on(() => this.charts.rebuild());
     this.showWindow();
@@ -108,6 +110,11 @@ export class LiveView implements View {
 
   enter(): void {
     this.charts.rebuild();
+    this.torque?.enter();
+  }
+
+  leave(): void {
+    this.torque?.leave();
   }
 
   frame(): void {
@@ -116,6 +123,7 @@ export class LiveView implements View {
     this.charts.draw();
     this.showValues();
     this.measures.refresh();
+    this.torque?.frame();
     setText(this.resolution, this.charts.exact ? "every sample" : "each column from its least to its greatest sample");
   }
 
