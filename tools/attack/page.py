@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Sequence
 
 from tools import ROOT
@@ -17,7 +18,8 @@ For whoever asks what can go wrong, and how often. {result} Every
 figure on this page was counted by `make attack` on the code whose digest stands below its table. A small share of the
 same attacks runs in every `make test`.
 
-A violation is a trial that broke what the section says must hold. The firmware's page tells
+A violation is a trial that broke what the section says must hold. `a/b` is a on the Mega and b on the Nano; one
+number is that of either. The firmware's page tells
 [why a lie of a potentiometer is not always found](firmware.md#how-a-follower-must-move). Of slow lies and of
 two faults at once nothing is promised: [a table](#slow-lies-and-two-faults-at-once) says what they cost. `min` are the
 minutes that all workers together took for a part.
@@ -26,12 +28,13 @@ minutes that all workers together took for a part.
 FAULTS_HEAD = """## The faults and how soon the motors are off
 
 From the moment at which the cause began to the drivers' enable pin, the longest of all moments on each board,
-to 0.25 ms. The [link reference](link.md#fault) has the remedies. Without a time: a trial that other faults may end as
+to 0.25 ms. The [link reference](link.md#fault) has causes and remedies. Without a time: a trial that other faults may end as
 well, see its row below. Not in the table: `params` is found at start, with the motors off; the times of `tracking`,
 `stalled` and `unrest` are parameters; a hang turns the motors off as `late_tick` before the watchdog restarts the
 board, if interrupts are on.
 """
 
+COLUMNS = ("tried", "trials", "violations", "worst", "seen")
 MOSTLY = 0.95  # a flipped bit may also be that of another fault's parameter
 
 # The injected fault that shows a fault best. A person must move the joint before `runaway` can show.
@@ -49,14 +52,42 @@ INJECTED_AS = {
 
 
 def write_table(rows: Iterable[Row]) -> str:
-    """A Markdown table; the last column holds the worst figures and the counts."""
-    lines = ["| tried | trials | violations | worst | seen |", "|---|--:|--:|---|---|"]
+    """A Markdown table. Rows that differ only in their board are one; what all rows share stands above the table."""
+    lines = [[tried, *(_on_both(*cells) for cells in zip(*found, strict=True))] for tried, found in _by_name(rows)]
+    same = {n for n in range(1, len(COLUMNS)) if len(lines) > 1 and len({line[n] for line in lines}) == 1}
+    above = ", ".join(f"{lines[0][n]} {COLUMNS[n]}" for n in sorted(same) if lines[0][n])
+    shown = [n for n in range(len(COLUMNS)) if n not in same]
+    table = [
+        f"| {' | '.join(COLUMNS[n] for n in shown)} |",
+        f"|{'|'.join('--:' if n in (1, 2) else '---' for n in shown)}|",
+        *(f"| {' | '.join(line[n] for n in shown)} |" for line in lines),
+    ]
+    return (f"In each row: {above}.\n\n" if above else "") + "\n".join(table) + "\n"
+
+
+def _by_name(rows: Iterable[Row]) -> list[tuple[str, list[list[str]]]]:
+    """What was tried, and the cells of its rows: one, or those of the Mega and of the Nano."""
+    found: dict[str, dict[str, list[str]]] = {}
     for row in rows:
         worst = ", ".join(f"{value:.4g} {name}" for name, value in row.worst.items())
-        seen = ", ".join(f"{name} {count:,}" for name, count in row.counts.items())
+        seen = ", ".join(f"{name} {count:,}" for name, count in sorted(row.counts.items(), key=lambda one: -one[1]))
         violations = f"**{row.violations:,}**" if row.violations else "0"
-        lines.append(f"| {row.tried} | {row.trials:,} | {violations} | {worst} | {seen} |")
-    return "\n".join(lines) + "\n"
+        board, name = re.fullmatch(r"(?i:(mega|nano): )?(.*)", row.tried).groups(default="")  # type: ignore[union-attr]
+        found.setdefault(name, {})[board] = [f"{row.trials:,}", violations, worst, seen]
+    return [
+        (name if len(boards) == 2 or "" in boards else f"{next(iter(boards))}: {name}", list(boards.values()))
+        for name, boards in found.items()
+    ]
+
+
+def _on_both(mega: str, nano: str | None = None) -> str:
+    """A cell: the one of both boards, or both boards' numbers where they differ, or both texts where they name other things."""
+    if nano is None or mega == nano:
+        return mega
+    words, others = (re.split(r"(\*{0,2}[\d.,]*\d\*{0,2})", text) for text in (mega, nano))
+    if words[::2] != others[::2]:
+        return f"{mega} / {nano}"
+    return "".join(one if one == two else f"{one}/{two}" for one, two in zip(words, others, strict=True))
 
 
 def write_result(results: Sequence[Result]) -> str:
@@ -78,15 +109,15 @@ def write_summary(results: Iterable[Result]) -> str:
 
 
 def write_faults(rows: Iterable[Row]) -> str:
-    """The faults that the board reports: what raises each, and the longest time until the motors were off."""
+    """The faults that the board reports: how each was injected, and the longest time until the motors were off."""
     seen = {row.tried: row for row in rows}
     enum = next(enum for enum in load(ROOT / "shared/link").enums if enum.name == "Fault")
-    lines = ["| fault | raised when | injected as | ms on the Mega | ms on the Nano |", "|---|---|---|--:|--:|"]
+    lines = ["| fault | injected as | ms on the Mega | ms on the Nano |", "|---|---|--:|--:|"]
     for value in enum.values:
         if injected := INJECTED_AS.get(value.name):
             times = [_time(seen.get(f"{board}: {injected}"), value.name) for board in ("mega", "nano")]
             shown = " | ".join("" if time is None else f"{time:.4g}" for time in times)
-            lines.append(f"| `{value.name}` | {value.cause} | {injected} | {shown} |")
+            lines.append(f"| `{value.name}` | {injected} | {shown} |")
     return "\n".join(lines) + "\n"
 
 
