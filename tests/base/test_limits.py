@@ -10,7 +10,7 @@ import pytest
 
 import greywhale
 from greywhale.adapt.limits import ADAPTATION_LIMITS
-from greywhale.base.limits import changed, limit, limits_in, markdown_table
+from greywhale.base.limits import changed, limit, limits_in, markdown_list
 from greywhale.commission.limits import COMMISSIONING_LIMITS
 from greywhale.identify.limits import IDENTIFICATION_LIMITS
 from greywhale.measure.limits import SWING_LIMITS
@@ -46,10 +46,10 @@ class Own:
     gaps_m: tuple[float, ...] = limit((1.5, 2.0), "m", "two of them", "measured")
 
 
-def test_a_table_has_a_row_for_each_limit_of_its_own() -> None:
-    assert markdown_table(Own()).splitlines()[2:] == [
-        "| `rest.still_rad` | **0.02 rad** – a hand trembles |",
-        "| `gaps_m` | **1.5, 2 m** – two of them (measured) |",
+def test_a_list_has_a_line_for_each_limit_of_its_own() -> None:
+    assert markdown_list(Own()).splitlines() == [
+        "- `rest.still_rad` **0.02 rad**: a hand trembles",
+        "- `gaps_m` **1.5, 2 m**: two of them (measured)",
     ]
 
 

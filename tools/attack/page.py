@@ -28,8 +28,8 @@ minutes that all workers together took for a part.
 FAULTS_HEAD = """## The faults and how soon the motors are off
 
 From the moment at which the cause began to the drivers' enable pin, the longest of all moments on each board,
-to 0.25 ms. The [link reference](link.md#fault) has causes and remedies. Without a time: a trial that other faults may end as
-well, see its row below. Not in the table: `params` is found at start, with the motors off; the times of `tracking`,
+to 0.25 ms. The [link reference](link.md#fault) has causes and remedies. Without a time: other faults may end the
+trial as well, see its row below. Not in the table: `params` is found at start, with the motors off; the times of `tracking`,
 `stalled` and `unrest` are parameters; a hang turns the motors off as `late_tick` before the watchdog restarts the
 board, if interrupts are on.
 """
@@ -66,7 +66,7 @@ def write_table(rows: Iterable[Row]) -> str:
 
 
 def _by_name(rows: Iterable[Row]) -> list[tuple[str, list[list[str]]]]:
-    """What was tried, and the cells of its rows: one, or those of the Mega and of the Nano."""
+    """The cells of each thing tried: one row, or those of the Mega and of the Nano."""
     found: dict[str, dict[str, list[str]]] = {}
     for row in rows:
         worst = ", ".join(f"{value:.4g} {name}" for name, value in row.worst.items())
@@ -81,7 +81,7 @@ def _by_name(rows: Iterable[Row]) -> list[tuple[str, list[list[str]]]]:
 
 
 def _on_both(mega: str, nano: str | None = None) -> str:
-    """A cell: the one of both boards, or both boards' numbers where they differ, or both texts where they name other things."""
+    """A cell of both boards: one text, with both numbers where they differ, or both texts where words differ."""
     if nano is None or mega == nano:
         return mega
     words, others = (re.split(r"(\*{0,2}[\d.,]*\d\*{0,2})", text) for text in (mega, nano))

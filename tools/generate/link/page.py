@@ -14,7 +14,7 @@ def page(declaration: Declaration) -> str:
         f"<!-- {NOTICE} -->",
         "# The serial link",
         _frame(declaration),
-        "## Messages\n\nA field's line has the byte where it begins, its type, its name and its meaning.",
+        "## Messages\n\nA field's line: its first byte, type, name and meaning.",
         *_messages(declaration),
         "## Lists of values",
         *(_enum(enum) for enum in declaration.enums),
@@ -33,14 +33,13 @@ def _frame(declaration: Declaration) -> str:
 wire:  COBS( type u8 | seq u8 | payload, at most {declaration.max_payload} bytes | crc u16 ) 00
 ```
 
-- Numbers are little-endian, two's complement. The CRC is CRC-16/CCITT-FALSE (polynomial 0x1021, start 0xFFFF, no
-  reflection, check value 0x29B1; Python: `binascii.crc_hqx(data, 0xFFFF)`) over type, seq and payload.
-- The byte 00 stands between frames and nowhere else; a receiver that has lost its place waits for the next one. Empty
-  frames (00 00) mean nothing, so that a sender may begin with a 00.
-- A request is answered by its type + 0x{REPLY_BIT:02X} with the same seq, or by `nack`. Every request may be repeated:
-  a host that hears nothing sends the same frame again. A frame that is not understood (length, coding, CRC) is counted
-  and not answered.
-- `hello` keeps its type, and its reply keeps the protocol version as its first byte, in every version to come."""
+- Numbers are little-endian, two's complement. The CRC over type, seq and payload is CRC-16/CCITT-FALSE (polynomial
+  0x1021, start 0xFFFF, no reflection, check value 0x29B1; Python: `binascii.crc_hqx(data, 0xFFFF)`).
+- The byte 00 stands between frames alone; a receiver that has lost its place waits for it. Empty frames mean nothing,
+  so a sender may begin with a 00.
+- A request is answered by its type + 0x{REPLY_BIT:02X} with the same seq, or by `nack`. A host that hears nothing sends
+  the same frame again. A damaged frame (length, coding, CRC) is counted and not answered.
+- `hello`, and the protocol version as the first byte of its reply, stay in every version to come."""
 
 
 def _type(field: Field) -> str:
@@ -82,48 +81,25 @@ def _fields(side: str, message: Message) -> str:
 
 
 def _enum(enum: Enum) -> str:
-    remedies = any(value.remedy for value in enum.values)
-    details = any(value.detail for value in enum.values)
-    causes = any(value.cause for value in enum.values)
-    more = ["detail"] * details + ["raised when"] * causes + ["what to do"] * remedies
-    head = ["value", "name", "meaning", *more]
-    rows = [
-        [str(value.value), f"`{value.name}`", value.description]
-        + [value.detail] * details
-        + [value.cause] * causes
-        + [value.remedy] * remedies
-        for value in enum.values
-    ]
-    lines = [
-        _row(head),
-        _line(len(head)),
-        *(_row(row) for row in rows),
-    ]
+    """A line for each value: its number, name and meaning, the detail, what raises it and what to do."""
+    lines = []
+    for value in enum.values:
+        cause = f" Raised when: {value.cause}." if value.cause else ""
+        detail = f" Detail: {value.detail}." if value.detail not in ("", "0") else ""
+        remedy = f" {value.remedy}" if value.remedy else ""
+        end = "." if cause or detail or remedy else ""
+        lines.append(f"- {value.value} `{value.name}`: {value.description}{end}{detail}{cause}{remedy}")
     return "\n".join([f"### {enum.name}", "", enum.description, "", *lines])
 
 
-def _line(columns: int) -> str:
-    """The line below a table's head: numbers in the first column, text in the others."""
-    return f"|---:{'|---' * (columns - 1)}|"
-
-
-def _row(cells: list[str]) -> str:
-    escaped = (cell.replace("|", "\\|") for cell in cells)
-    return f"| {' | '.join(escaped)} |"
-
-
 def _table(declaration: Declaration) -> str:
-    return f"""{declaration.parameter_count} parameters, {declaration.table_size} bytes packed in index order
-without padding; `param_crc` is the CRC of these bytes. `param_set` writes a staged copy, `param_apply` checks it whole
-and makes it the running set between two ticks, `param_save` writes the running set to EEPROM. The EEPROM banks have
-layout {declaration.layout}. A board also reads banks of older layouts, which lack the groups at the end (each says
-since which layout it exists), and adds their defaults. When it finds a newer layout, it starts from the defaults.
+    return f"""{declaration.parameter_count} parameters, {declaration.table_size} bytes packed in index order; `param_crc` is their CRC. On the link a parameter is a raw
+integer: physical value = raw x lsb (1 where none stands). A line has index or place, name, type, range, lsb and default.
 
-A bank is magic 0x5747 u16, layout u8, length u16, sequence u16, the packed table, and the CRC of layout to table u16. Bank
-A is at address 16, bank B at 272; a save writes the older one and sets its magic last, and a board starts from the newer
-of the whole ones.
-
-On the link a parameter is a raw integer: physical value = raw x lsb."""
+The EEPROM banks have layout {declaration.layout}. Banks of older layouts lack the groups at the end, which get their
+defaults; a newer layout means the defaults. A bank is magic 0x5747 u16, layout u8, length u16, sequence u16, the table,
+and the CRC of layout to table u16. Bank A is at address 16, bank B at 272; a save writes the older one and sets its
+magic last, and a board starts from the newer of the whole ones."""
 
 
 def _number(raw: int, lsb: Fraction) -> str:
@@ -133,7 +109,7 @@ def _number(raw: int, lsb: Fraction) -> str:
 
 def _default(parameter: Parameter) -> str:
     shown = list(dict.fromkeys(_number(raw, parameter.lsb) for raw in parameter.defaults))
-    return shown[0] if len(shown) == 1 else " / ".join(_number(raw, parameter.lsb) for raw in parameter.defaults)
+    return shown[0] if len(shown) == 1 else "/".join(_number(raw, parameter.lsb) for raw in parameter.defaults)
 
 
 def _groups(declaration: Declaration) -> list[str]:
@@ -150,20 +126,19 @@ def _group(group: Group, first: int) -> str:
     where = f"Index {first}..{last}" + (f": {first} + {step} x element + place." if group.count > 1 else ".")
     if group.since > 1:
         where += f" Since layout {group.since}."
-    rows = [
-        _row(
-            [
-                str(place if group.count > 1 else first + place),
-                f"`{group.name + 'N.' if group.name else ''}{p.name}`",
-                p.kind,
-                p.unit,
-                str(p.lsb),
-                f"{_number(p.minimum, p.lsb)} .. {_number(p.maximum, p.lsb)}{', not 0' if p.nonzero else ''}",
-                _default(p),
-                p.description + (f"; below {p.below}" if p.below else ""),
-            ]
-        )
-        for place, p in enumerate(group.parameters)
+    lines = [
+        f"- {place if group.count > 1 else first + place} {_parameter(group, one)}"
+        for place, one in enumerate(group.parameters)
     ]
-    head = ["place" if group.count > 1 else "index", "name", "type", "unit", "lsb", "range", "default", "meaning"]
-    return "\n".join([f"### {group.title}", "", group.description, "", where, "", _row(head), _line(len(head)), *rows])
+    return "\n".join([f"### {group.title}", "", f"{group.description} {where}", "", *lines])
+
+
+def _parameter(group: Group, parameter: Parameter) -> str:
+    """Name, type, range with its unit, step where it is not 1, default and meaning."""
+    lsb = parameter.lsb
+    span = f"{_number(parameter.minimum, lsb)}..{_number(parameter.maximum, lsb)} {parameter.unit}".strip()
+    facts = [parameter.kind, span + (", not 0" if parameter.nonzero else "")]
+    facts += [f"lsb {lsb}"] if lsb != 1 else []
+    below = f"; below {parameter.below}" if parameter.below else ""
+    name = f"{group.name}N.{parameter.name}" if group.name else parameter.name
+    return f"`{name}` ({', '.join(facts)}; default {_default(parameter)}): {parameter.description}{below}"

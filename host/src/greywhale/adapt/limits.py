@@ -16,16 +16,14 @@ from greywhale.tune.limits import WITHOUT_FLOORS, TuningLimits
 class ChangeLimits:
     """Limits of a change: the board takes another set over while a person works."""
 
-    stage_every_samples: int = limit(
-        4, "samples", "one parameter is staged so often: its answer takes less time than the samples between"
-    )
-    look_every_samples: int = limit(10, "samples", "a rest is looked for so often, which costs little time")
-    rest_samples: int = limit(250, "samples", "leader and follower rest for so long before a set is changed")
-    still_rad: float = limit(0.02, "rad", "leader and follower stay within this while they rest: a hand trembles")
+    stage_every_samples: int = limit(4, "samples", "one parameter is staged so often")
+    look_every_samples: int = limit(10, "samples", "a rest is looked for so often")
+    rest_samples: int = limit(250, "samples", "rest of leader and follower before a set is changed")
+    still_rad: float = limit(0.02, "rad", "a rest keeps within this: a hand trembles")
     close_rad: float = limit(
         0.12,
         "rad",
-        "no error is larger at a change, an urgent one too: the arm would be left behind in the middle of a move",
+        "no error is larger at a change, an urgent one too",
     )
     max_off_ticks: int = limit(1000, "ticks", "a change that takes longer went wrong")
     max_first_start_ticks: int = limit(
@@ -38,7 +36,7 @@ class ChangeLimits:
 class SampleLimits:
     """Limits of a stretch of samples, and of a record of stretches."""
 
-    max_lost_samples: int = limit(20, "samples", "a longer gap is not filled in: it ends the stretch in the making")
+    max_lost_samples: int = limit(20, "samples", "a longer gap ends the stretch")
     hand_still_rad: float = limit(0.02, "rad", "the leader rests within this: a hand trembles")
     least_swing_record_s: int = limit(4, "s", "shorter records say little about swings")
 
@@ -47,17 +45,16 @@ class SampleLimits:
 class ModelLimits:
     """The fit of the live model to the last stretches."""
 
-    fit_steps: int = limit(8, "steps of least squares", "a fit starts at the last one, so a few are enough")
+    fit_steps: int = limit(8, "steps of least squares", "a fit starts at the last one")
     load_preference: float = limit(
-        1.5, "times the misfit", "a fit that begins with the load is taken unless the other misses by so much less"
+        1.5, "times the misfit", "the other fit must be so much better than that with the load"
     )
-    plants: int = limit(3, "plants", "a set is tuned for the estimate, and others that the fit leaves open")
+    plants: int = limit(3, "plants", "a set is tuned for the estimate and open ones")
     moved_rad: float = limit(0.1, "rad", "a joint shows its friction from this much motion on")
     max_pot_error: float = limit(
         1.35,
         "times",
-        "a reading is doubted that turns too little, or too far, by this: of arms that were hot, worn, stiff, loaded "
-        "or short of supply none looked like more than 1.15, one that lost 40 % of its gain like 1.5 to 1.8",
+        "a reading that turns too little or too far by this is doubted: honest wear looked like 1.15 at most",
         MEASURED_ON_ARMS,
     )
 
@@ -69,8 +66,7 @@ class GainLimits:
     lead_s: int = limit(
         4,
         "s",
-        "a chain begins at rest for the model, and in the middle of anything for the arm: its first stretches show "
-        "neither",
+        "first stretches of a chain do not count: the model begins at rest",
     )
     group_s: int = limit(4, "s", "neighbouring stretches are alike, so this many count as one observation")
     pot_noise_rad2: float = limit(1e-6, "rad²", "smaller errors of a joint (1 mrad rms) are its potentiometer's")
@@ -80,22 +76,19 @@ class GainLimits:
 class ProposalLimits:
     """The motion that a search in the background trains on, and the stretches that it compares its find by."""
 
-    newest_s: int = limit(
-        24, "s", "the model is fitted to these, and their motion is trained on: a load may have been taken up before"
-    )
-    row_every_ticks: int = limit(5, "ticks", "the motion has a row so often; the readings' noise is averaged between")
+    newest_s: int = limit(24, "s", "the model is fitted to these, and trained on their motion")
+    row_every_ticks: int = limit(5, "ticks", "the motion has a row so often; noise is averaged between")
     faster: float = limit(
         1.5,
         "times the speed",
-        "the search trains on the way back as well, quicker: a set that never needed more could have too little "
-        "voltage for a person who hurries",
+        "the way back is trained quicker: for a person who hurries",
         MEASURED_ON_ARMS,
     )
     block_s: int = limit(8, "s", "older stretches join the comparison so many at a time")
     same_arm_log: float = limit(
         0.4,
         "as a logarithm",
-        "older stretches join while the model explains each joint's error in them as in the newest, up to this factor",
+        "older stretches join while the model explains their errors to this factor",
     )
 
 
@@ -104,39 +97,33 @@ class DecisionLimits:
     """Limits by which a set is searched, tried, kept and given up."""
 
     keep_s: int = limit(60, "s", "so much of the work is kept")
-    first_search_s: int = limit(20, "s", "so much must have been seen with the running set before a search")
+    first_search_s: int = limit(20, "s", "seen with the running set before a search")
     between_searches_s: int = limit(10, "s", "so much new work lies between two searches")
-    work_rad: float = limit(0.2, "rad", "a search needs a person at work: some joint's leader went this far")
+    work_rad: float = limit(0.2, "rad", "a search needs a person at work: a leader went this far")
     context_s: int = limit(
         8,
         "s",
-        "a set is judged by its last stretch with so many before it: what the model's integral holds takes time to "
-        "build up",
+        "before the judged stretch: an integral takes time to build up",
     )
-    fit_s: int = limit(12, "s", "while another set than that from the start runs, the model is fitted to so much")
+    fit_s: int = limit(12, "s", "the model is fitted to so much while another set runs")
     refit_every_s: int = limit(8, "s", "it is fitted anew so often then")
-    fit_valid_s: int = limit(12, "s", "a verdict needs a model that knows the arm until so long ago")
+    fit_valid_s: int = limit(12, "s", "a verdict needs a model as new as this")
     max_trial_s: int = limit(60, "s", "a trial that says nothing by then ends")
     trial_swings_s: int = limit(20, "s", "so much of a trial is looked at for swings")
     window_s: int = limit(30, "s", "an excess counts over this time, half a minute")
-    max_excess: float = limit(
-        0.20, "of the error", "the error may exceed that of the set from the start by so much over the window"
-    )
+    max_excess: float = limit(0.20, "of the error", "the error may exceed the first set's by so much over the window")
     alert_excess: float = limit(
         0.10,
         "of the error",
-        "a set on trial goes back at this excess, since it takes a stretch to see it; by chance alone half a minute "
-        "differs by some 0.05",
+        "a set on trial goes back; by chance half a minute differs by 0.05",
         MEASURED_ON_ARMS,
     )
     model_sigma: float = limit(0.04, "as a logarithm", "a model's ratio of two sets is wrong by this much")
-    error_memory: float = limit(
-        0.5, "of the error", "so much of the last promise's error counts for the next: each search fits the model anew"
-    )
+    error_memory: float = limit(0.5, "of the error", "so much of the last promise's error counts for the next")
     sigmas: float = limit(2.0, "standard deviations", "a proposal must be better by so many")
     min_gain: float = limit(0.03, "of the error", "a set is kept that is better by this for certain")
     max_log_misfit: float = limit(
-        0.7, "as a logarithm", "a model that misses some joint's error by more than this factor does not know the arm"
+        0.7, "as a logarithm", "a model that misses a joint's error by more does not know the arm"
     )
 
 

@@ -24,9 +24,9 @@ from greywhale.base.types import Floats
 BY_JUDGEMENT = "by judgement"
 BY_DEFINITION = "by definition"
 BY_THE_FIRMWARE = "the firmware"
-MEASURED_ON_ARMS = "measured: simulated arms"
-MEASURED_IN_TRIALS = "measured: trials of commissionings"
-MEASURED_IN_SEARCHES = "measured: tunings with several seeds"
+MEASURED_ON_ARMS = "measured: arms"
+MEASURED_IN_TRIALS = "measured: trials"
+MEASURED_IN_SEARCHES = "measured: tunings"
 
 T = TypeVar("T")
 
@@ -84,13 +84,9 @@ def changed(limits: Any, usual: Any) -> dict[str, Any]:
     return found
 
 
-def markdown_table(limits: Any) -> str:
-    """The limits as a table for the documentation; an origin stands there if it is more than judgement.
-
-    Value and reason share a cell: a few values are lists, and a column of their own would leave no room for reasons.
-    """
-    rows = [f"| `{one.name}` | **{_shown(one)}** – {one.reason}{_origin(one)} |" for one in limits_in(limits)]
-    return "\n".join(["| limit | value – reason |", "|---|---|", *rows])
+def markdown_list(limits: Any) -> str:
+    """The limits as a list for the documentation; an origin stands there if it is more than judgement."""
+    return "\n".join(f"- `{one.name}` **{_shown(one)}**: {one.reason}{_origin(one)}" for one in limits_in(limits))
 
 
 def _origin(one: Limit) -> str:

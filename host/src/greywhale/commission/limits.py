@@ -15,31 +15,28 @@ class MotionLimits:
 
     speed_share: float = limit(0.9, "of what a host can lead", "no move is quicker: a tenth to spare")
     edge_s: float = limit(0.04, "s", "a hand cannot jump")
-    first_rad: float = limit(0.15, "rad", "the little first motion is no larger: nothing is known of the arm yet")
+    first_rad: float = limit(0.15, "rad", "the first motion is no larger")
     first_again_rad: float = limit(0.4, "rad", "the first motion once more, for joints that friction held")
     first_edge_s: float = limit(0.5, "s", "an edge of the first motion is slow")
     first_hold_s: float = limit(0.7, "s", "each of its stops is long enough to arrive")
     softer_starts: int = limit(
         3,
         "times",
-        "so often a joint that swings until the board stops it gets half the voltage of its controller from before: "
-        "what cannot be led along the excitation and the check cannot be known",
+        "a joint that the board stops for swings gets half the voltage",
     )
     least_way_share: float = limit(
         0.25, "of the leader's way", "a joint that went less, or the other way, does not move freely"
     )
-    sinking_s: float = limit(0.15, "s", "the end of a log at which a joint that sinks goes at one speed")
+    sinking_s: float = limit(0.15, "s", "end of a log in which a sinking joint has one speed")
     small_rad: tuple[float, ...] = limit((0.1, 0.0), "rad", "stops of the small moves, which come first")
     move_shares: tuple[float, ...] = limit(
         (0.9, -0.6, 0.3), "of the room", "stops of the moves; each joint begins at another one"
     )
     hold_s: float = limit(1.3, "s", "a stop of the moves")
-    rest_s: float = limit(
-        2.2, "s", "the last stop of the moves: long enough for a joint that breaks loose late", MEASURED_ON_ARMS
-    )
-    reaches_s: float = limit(5.5, "s", "how long the reaches last, which are as a hand makes them")
+    rest_s: float = limit(2.2, "s", "the last stop: a joint may break loose late", MEASURED_ON_ARMS)
+    reaches_s: float = limit(5.5, "s", "duration of the reaches, as a hand makes them")
     reaches_share: float = limit(0.8, "of the room", "how far the reaches go")
-    slow_s: float = limit(4.0, "s", "one slow swing to both sides, in which a joint rattles most easily")
+    slow_s: float = limit(4.0, "s", "one slow swing to both sides: there joints rattle most easily")
     slow_share: float = limit(0.35, "of the room", "how far that swing goes")
     pause_s: float = limit(0.3, "s", "a rest between two parts")
     still_shares: tuple[float, ...] = limit(
@@ -53,41 +50,35 @@ class MotionLimits:
 class RoundLimits:
     """Limits at which a round, or its trials, end."""
 
-    max_error_share: float = limit(
-        0.5, "of the error before", "another round follows while a joint's best is above this"
-    )
+    max_error_share: float = limit(0.5, "of the error before", "above this another round follows")
     poor_times: float = limit(
         2.0,
         "times the error",
-        "a joint is poor that follows so much worse than its model promised: arms and models are a factor of 1.8 apart "
-        "at most where a model is right",
+        "a joint so much worse than promised is poor: right models are 1.8 off at most",
         MEASURED_ON_ARMS,
     )
     poor_error_share: float = limit(
         0.03, "of the error before", "what is below this is not poor, whatever the model says", MEASURED_ON_ARMS
     )
-    poor_again_share: float = limit(
-        0.15, "of the error before", "another round follows while a joint is poor and above this"
-    )
+    poor_again_share: float = limit(0.15, "of the error before", "above this another round follows for a poor joint")
     softer_shares: tuple[float, ...] = limit(
         (1.0, 0.5, 0.25),
         "of the way from the controller before to the tuned one",
-        "a joint that ended a trial, or was restless twice, gets these one after another, before it keeps that from "
-        "before",
+        "for a joint that ended a trial or was restless twice, one after another",
     )
     good_error_share: float = limit(
         0.04,
         "of the error before",
-        "a round's trials end when the joints' best together are below this",
+        "a round ends when the joints' best together are below",
         MEASURED_IN_TRIALS,
     )
     min_gain: float = limit(0.1, "of the error", "or when the last trials gained less than this", MEASURED_IN_TRIALS)
     trials_without_gain: int = limit(3, "trials", "how many trials must gain that", MEASURED_IN_TRIALS)
-    max_confirmations: int = limit(12, "trials", "so many combinations of the joints' best are tried at the end")
+    max_confirmations: int = limit(12, "trials", "combinations of the joints' best, tried at the end")
     max_model_error: float = limit(
         0.5,
         "of the tracking error (mean squares)",
-        "a given model is of another arm if it predicts a joint's way no better than this",
+        "a given model that predicts no better is of another arm",
     )
 
 
@@ -95,15 +86,15 @@ class RoundLimits:
 class EvidenceLimits:
     """Limits of the evidence that earlier trials give a later round."""
 
-    fitted_trials: int = limit(2, "trials", "so many logs of trials are fitted, besides the excitation")
+    fitted_trials: int = limit(2, "trials", "logs fitted besides the excitation")
     gaps_rad: tuple[float, ...] = limit(
         (0.002, 0.005, 0.01, 0.02),
         "rad to either side",
-        "play or gaps that may be missing in a model under which a joint rests and on the arm does not; mildest first",
+        "play or gaps that a model may lack; mildest first",
     )
     lags_s: tuple[float, ...] = limit((1e-3, 2e-3, 4e-3), "s", "lag of a potentiometer that may be missing in it")
     gains: tuple[float, ...] = limit((1.4, 2.0, 2.8), "times", "loop gain that may be missing in it")
-    hunting_end_s: float = limit(0.8, "s", "the end of a log that hunting ended, which shows how it hunts")
+    hunting_end_s: float = limit(0.8, "s", "the end of a log shows how a joint hunts")
     shown_share: float = limit(0.5, "of the measured unrest", "a plant shows the unrest from this on")
 
 
@@ -114,11 +105,11 @@ class StepLimits:
     max_error_share: float = limit(
         0.99,
         "of the error before",
-        "a joint may keep so much on steps; the rest of the way to 1 is the model's own error",
+        "most on steps; the rest is the model's error",
         MEASURED_ON_ARMS,
     )
     believed_share: float = limit(
-        0.1, "of the error", "a model is believed that predicts the error before, in the check's moves, to within this"
+        0.1, "of the error", "a model that predicts the error before to within this is believed"
     )
 
 
@@ -129,24 +120,23 @@ class JudgeLimits:
     bearable_price: float = limit(
         2.0,
         "times the error",
-        "what swings as much as can be borne at most, must follow with half the error of one that passes",
+        "price of swinging as much as can be borne",
     )
     repeat_rad2: float = limit(
         1e-6,
         "rad²",
-        "besides a share, two recordings with the same controllers differ by so much (1 mrad rms)",
+        "and by so much (1 mrad rms) recordings with the same controllers differ",
         MEASURED_IN_TRIALS,
     )
     unseen_rad: float = limit(
         0.002,
         "rad rms",
-        "where a joint hardly moves, friction and play make its error: so much more nobody sees",
+        "where a joint hardly moves: so much more nobody sees",
     )
     unseen_holding_rad: float = limit(
         0.006,
         "rad rms",
-        "while it holds still it stays where friction left it: one controller 1 mrad away from its leader in one "
-        "trial, 6 in another",
+        "at rest friction decides: 1 mrad in one trial, 6 in another",
         MEASURED_IN_TRIALS,
     )
     kept_share: float = limit(
@@ -155,12 +145,12 @@ class JudgeLimits:
     kept_growth: float = limit(
         2.0,
         "times before",
-        "the unrest of such a joint may grow so much: it feels how stiffly they rest",
+        "so much more unrest for such a joint",
     )
     pushed_rad: float = limit(
         0.003,
         "rad rms",
-        "quicker neighbours push a joint that holds still by 2 to 3 mrad; its own moves show that it rests",
+        "quicker neighbours push a joint at rest by 2 to 3 mrad",
         MEASURED_IN_TRIALS,
     )
 
@@ -172,7 +162,7 @@ class SearchLimits:
     packs: tuple[tuple[float, int], ...] = limit(
         ((0.05, 96), (0.05, 64), (0.03, 64), (0.02, 64)),
         "of the box, and sets",
-        "the searches, each around the best so far: the width of the first pack, and the sets to try",
+        "searches, each around the best so far: width of the first pack, sets to try",
     )
     worse_gain: float = limit(1.3, "times", "the worse arm has so much loop gain")
     worse_lag_s: float = limit(1e-3, "s", "the worse arm has so much more lag of the potentiometers")
@@ -186,30 +176,28 @@ class SearchLimits:
     before_aim: float = limit(
         0.95,
         "of before",
-        "the error on steps and the ripple that it may show: an arm hisses 1.0 to 1.1 times its model",
+        "error on steps and ripple: an arm hisses 1.0 to 1.1 times its model",
         MEASURED_ON_ARMS,
     )
-    correction_share: float = limit(
-        0.85, "of the arm's limit", "what a trial shows beyond this, the model may show less of, by the same ratio"
-    )
+    correction_share: float = limit(0.85, "of the arm's limit", "what a trial shows beyond this, the model must lower")
     least_aim: float = limit(0.1, "of an aim", "so much of an aim stays whatever the trials show")
     still_rad: float = limit(
         0.002,
         "rad rms",
-        "the unrest between steps, or what was there before: the check has few poses to hunt at",
+        "the unrest between steps, or what was there before",
     )
     max_overshoot: float = limit(15.0, "% of a step", "the overshoot in moves, or as much as before")
     retry_error: float = limit(
         0.5,
         "of the error before (rms)",
-        "a joint that keeps more is searched once more: the tuned fuzzy sets may be a dead end",
+        "a joint that keeps more is searched again",
         MEASURED_ON_ARMS,
     )
     price: float = limit(2.0, "times the error before", "of being beyond a limit by all of it")
     steps_price: float = limit(
         20.0,
         "times the error before",
-        "the same for steps: with 4 % more of them a joint does not pass, whatever the arm does",
+        "the same for steps: with 4 % more a joint does not pass",
         MEASURED_ON_ARMS,
     )
     host_ripple_share: float = limit(

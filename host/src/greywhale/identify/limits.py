@@ -15,22 +15,14 @@ from greywhale.base.limits import MEASURED_ON_ARMS, limit
 class DataLimits:
     """A log made ready: its stretches, velocities and windows."""
 
-    window_s: float = limit(0.5, "s", "a window is so long: simulated from a known start, it shows what the numbers do")
+    window_s: float = limit(0.5, "s", "length of a window, simulated from a known start")
     smoothing_s: float = limit(0.04, "s", "the angle is smoothed over this to find velocities")
-    led_s: float = limit(
-        0.1, "s", "so long before a window the log leads the links, so that motors apart from them have come to theirs"
-    )
-    compared_s: float = limit(5e-3, "s", "windows are compared so often: readings that are closer differ in noise only")
-    usual_spacings: float = limit(
-        99.0, "%", "the longest step holds in so many of the spacings between rows; the few longer ones may exceed it"
-    )
+    led_s: float = limit(0.1, "s", "before a window the log leads the links: motors come to theirs")
+    compared_s: float = limit(5e-3, "s", "between compared readings: closer ones differ in noise only")
+    usual_spacings: float = limit(99.0, "%", "the longest step holds in so many of the spacings between rows")
     sure_rad_s: float = limit(0.05, "rad/s", "a slower joint may turn back within its potentiometer's play unseen")
-    longest_gap_s: float = limit(
-        0.02, "s", "rows further apart, or than one and a half periods of a slower log, end a stretch"
-    )
-    block_s: float = limit(
-        0.5, "s", "blocks are held out; one is shorter than a motion, so each motion is in both parts"
-    )
+    longest_gap_s: float = limit(0.02, "s", "rows further apart (or 1.5 periods of a slower log) end a stretch")
+    block_s: float = limit(0.5, "s", "length of a held-out block: shorter than a motion")
     held_out_every: int = limit(4, "blocks", "the last of so many is held out")
     lively_rad: float = limit(0.01, "rad", "in a lively window a joint moves by more than this")
     max_windows: int = limit(120, "windows", "more would take longer, and hardly tell more")
@@ -42,12 +34,10 @@ class CheckLimits:
 
     shortest_s: float = limit(4.0, "s", "less of a log shows too little")
     farthest_s: float = limit(0.1, "s", "rows further apart do not show how an arm moves")
-    clipped_share: float = limit(
-        0.01, "of the log", "a reading that stays exactly at its extreme for this long, far out, is clipped"
-    )
-    clipped_from_rad: float = limit(2.3, "rad", "a reading is clipped only so far out: there a potentiometer ends")
+    clipped_share: float = limit(0.01, "of the log", "a reading so long at its extreme, far out, is clipped")
+    clipped_from_rad: float = limit(2.3, "rad", "so far out: there a potentiometer ends")
     against: float = limit(
-        -0.3, "correlation of error and voltage", "a controller pulls towards the leader; below this it pushes away"
+        -0.3, "correlation of error and voltage", "below this a controller pushes away from its leader"
     )
     saturated_share: float = limit(0.5, "of the log", "longer at full voltage is worth a remark")
     fitting_share: float = limit(
@@ -56,7 +46,7 @@ class CheckLimits:
     max_shared: float = limit(
         0.2,
         "of the shorter log",
-        "logs may share this: recordings on the bench may begin with the same motion and noise",
+        "logs may share this: those of the bench may begin alike",
     )
 
 
@@ -64,20 +54,14 @@ class CheckLimits:
 class WindowLimits:
     """Limits for the comparison of a model with a window, or with the closed loop."""
 
-    speed_doubt_rad_s: float = limit(
-        0.05, "rad/s", "a start speed may be off by this beyond what noise explains: motion within the smoothing"
-    )
-    worth_a_change: float = limit(
-        0.95, "of the squared difference", "another side of a gap is taken for a start only if it leaves less"
-    )
+    speed_doubt_rad_s: float = limit(0.05, "rad/s", "a start speed may be off by this beyond its noise")
+    worth_a_change: float = limit(0.95, "of the squared difference", "a start on the gap's other side must leave less")
     usual_misfit: float = limit(
         4.0,
         "times the mean window's",
-        "a window counts as usual up to this; in many a log the median window is one of rest",
+        "a window counts as usual up to this; the median window may be one of rest",
     )
-    loop_doubt_rad: float = limit(
-        1e-2, "rad", "a difference in the closed loop counts as one standard deviation: it lasts for many readings"
-    )
+    loop_doubt_rad: float = limit(1e-2, "rad", "one standard deviation of the closed loop's difference, which lasts")
 
 
 @dataclass(frozen=True)
@@ -85,10 +69,10 @@ class SearchLimits:
     """Limits by which a search takes a model for better."""
 
     min_improvement: float = limit(
-        0.01, "of 1 + squares over noise", "an order with more quantities must predict the held-out data better by this"
+        0.01, "of 1 + squares over noise", "an order with more quantities must predict held-out data better by this"
     )
     min_closed_improvement: float = limit(
-        0.2, "of the error", "the same for the closed loop, which is rough: chance alone moves its error by a tenth"
+        0.2, "of the error", "the same for the closed loop: chance alone moves its error by a tenth"
     )
     rival_margin: float = limit(
         0.02, "of 1 + squares over noise", "other orders that are worse by no more are kept as rivals"
@@ -97,20 +81,17 @@ class SearchLimits:
     lossy_drivers: float = limit(
         0.05,
         "of 1 + squares over noise",
-        "drivers that lose volts must predict so much better: what friction does otherwise than a model may look like "
-        "them, and where they are not they leave much open",
+        "drivers that lose volts must predict so much better: friction may look like them",
     )
     soft_teeth: float = limit(
         0.05,
         "of log(1 + squares over noise)",
-        "a fit starts from teeth that bend where they alone predict so much better",
+        "teeth that bend start a fit where they alone predict so much better",
     )
     probe_slack: float = limit(
-        0.04, "of the held-out misfit", "an order gets a whole fit only if a short one leaves no more than this on top"
+        0.04, "of the held-out misfit", "an order gets a whole fit if a short one leaves no more on top"
     )
-    other_optimum: float = limit(
-        0.3, "of a searched number", "numbers that differ by this are another optimum and get a fit of their own"
-    )
+    other_optimum: float = limit(0.3, "of a searched number", "numbers that differ by this get a fit of their own")
     farthest_log: float = limit(
         2.5, "as a logarithm", "GWO-WOA searches no farther from the arm file's value, to either side"
     )
@@ -123,14 +104,14 @@ class JudgeLimits:
     max_unexplained: float = limit(
         0.5,
         "of the tracking error",
-        "a joint is doubted whose model leaves more than this with a changed controller",
+        "more left with a changed controller makes a joint doubted",
     )
-    worse_times: float = limit(4.0, "times", "and only if that is so many times what it leaves with its own")
+    worse_times: float = limit(4.0, "times", "if it is also so many times what its own leaves")
     small_rad: float = limit(5e-3, "rad", "below this error nobody cares which arm is nearer")
     sure_share: float = limit(
         0.95,
         "of the models that a fit allows",
-        "a model that is further from a log than this many of them is not so by chance",
+        "a model further off than these is not so by chance",
     )
 
 
@@ -138,9 +119,7 @@ class JudgeLimits:
 class UncertaintyLimits:
     """Limits up to which a quantity is known, and the errors of fits beyond their scatter."""
 
-    open_log: float = limit(
-        0.3, "as a logarithm", "a positive quantity is left open if it is known no better than to this factor"
-    )
+    open_log: float = limit(0.3, "as a logarithm", "a positive quantity known no better is left open")
     open_steps: tuple[tuple[str, float], ...] = limit(
         (
             ("breakaway", 0.5),
@@ -166,18 +145,14 @@ class UncertaintyLimits:
     wide_difference: float = limit(
         0.1,
         "of the arm file's doubt",
-        "derivatives are wide: a joint that hunts makes the residual rough, which is no information",
+        "derivatives are wide: hunting makes the residual rough",
     )
     uncertain: float = limit(0.05, "of the value", "numbers that are less certain may lie on a ridge")
-    sharper: float = limit(
-        3.0, "times as certain", "a combination of two numbers is stated if it is so much surer than either"
-    )
-    mass_share: float = limit(
-        0.1, "of a link's mass", "an arm file's may be off by this: weighed with or without cables and screws"
-    )
+    sharper: float = limit(3.0, "times as certain", "a combination so much surer than either number is stated")
+    mass_share: float = limit(0.1, "of a link's mass", "an arm file's may be off by this: cables and screws")
     length_share: float = limit(0.02, "of a link's length", "an arm file's may be off by this: 3 mm of 15 cm")
     start_sigmas: float = limit(2.0, "standard deviations", "a fit of a simulated log starts so far away")
-    shape_logs: float = limit(3.0, "logs", "the formula's shape counts like so many fits of simulated logs")
+    shape_logs: float = limit(3.0, "logs", "the formula counts like so many fits of simulated logs")
     systematic: tuple[tuple[str, float], ...] = limit(
         (
             ("inertia", 0.015),
@@ -191,14 +166,13 @@ class UncertaintyLimits:
             ("play", 6e-4),
         ),
         "standard deviations of the searched numbers",
-        "fits are off beyond their scatter: those of simulated logs begin near the truth, the real one ends in one of "
-        "several optima",
+        "fits are off beyond their scatter: the real one ends in one of several optima",
         MEASURED_ON_ARMS,
     )
     foreign: tuple[tuple[str, float], ...] = limit(
         (("damping", 0.0022), ("coulomb", 0.0127), ("play", 9e-4)),
         "standard deviations of the searched numbers",
-        "on arms of another engine fits are off by this besides: people read it, and no plant is drawn with it",
+        "besides, on arms of another engine; for people, no plant is drawn with it",
         MEASURED_ON_ARMS,
     )
     systematic_alpha: tuple[float, ...] = limit(
@@ -216,39 +190,29 @@ class UncertaintyLimits:
 class ExcitationLimits:
     """Limits of a designed motion."""
 
-    reach_rad: float = limit(1.0, "rad", "without a range a joint moves no farther to either side of where it is")
-    margin_rad: float = limit(0.1, "rad", "this distance to a limit of the board or a stop of the arm stays free")
+    reach_rad: float = limit(1.0, "rad", "without a range, the way to either side")
+    margin_rad: float = limit(0.1, "rad", "distance to the board's limits and the arm's stops")
     narrowest_rad: float = limit(0.2, "rad", "a narrower range shows nothing")
     speed_share: float = limit(0.5, "of the voltage", "speed may take this")
     acceleration_share: float = limit(0.5, "of the voltage", "acceleration may take this")
-    max_speed_rad_s: float = limit(4.0, "rad/s", "no joint is quicker, nor than two thirds of what a host can lead")
+    max_speed_rad_s: float = limit(4.0, "rad/s", "most speed, and two thirds of what a host can lead")
     lag_share: float = limit(
         0.4,
         "of the board's tracking limit",
-        "the follower may lag by this in simulation; from half of that limit on the player slows",
+        "the most lag in simulation; the player slows from half of the limit on",
     )
     usual_tracking_rad: float = limit(0.9, "rad", "that limit where the board has none, or a wider one")
-    motor_doubt_log: float = limit(
-        0.7, "as a logarithm", "a motor may be wrong by this in an arm file, on the arms on which a motion is tried"
-    )
+    motor_doubt_log: float = limit(0.7, "as a logarithm", "a motion is tried on arms whose motors are off by this")
     friction_v: tuple[float, float] = limit((0.2, 0.9), "V", "friction of the arms on which a motion is tried")
-    unsafe_price: float = limit(
-        50.0, "", "a lag or an overshoot of twice the limit costs more than any information is worth"
-    )
-    shrink: float = limit(
-        0.9, "times", "a motion that is not safe on some arm is shrunk towards the pose by this, again and again"
-    )
-    still_rad_s: float = limit(
-        0.01, "rad/s", "below this speed friction may have any value within its limits and shows nothing"
-    )
+    unsafe_price: float = limit(50.0, "", "of a lag or an overshoot of twice the limit: more than any information")
+    shrink: float = limit(0.9, "times", "a motion unsafe on some arm shrinks towards the pose by this, again and again")
+    still_rad_s: float = limit(0.01, "rad/s", "slower, friction may have any value and shows nothing")
     frequencies_hz: tuple[float, float] = limit((0.1, 3.0), "Hz", "the lowest and the highest sine")
     fade_s: float = limit(1.5, "s", "fading in and out takes this long")
     fade_share: float = limit(0.2, "of the motion", "and at most this much of a short motion")
     rest_s: float = limit(0.3, "s", "the motion rests before and after")
-    pauses_per_s: float = limit(
-        0.2, "1/s", "now and then all stands still, so that friction at rest, creeping and hunting show"
-    )
-    pause_s: float = limit(1.2, "s", "such a pause, from slowing down to being at speed again")
+    pauses_per_s: float = limit(0.2, "1/s", "standstills, which show friction at rest, creeping and hunting")
+    pause_s: float = limit(1.2, "s", "of such a pause, from slowing down to speed again")
     amplitude_spread_log: float = limit(
         3.0, "as a logarithm", "amplitudes differ by up to this factor, before frequency"
     )

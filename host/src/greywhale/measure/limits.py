@@ -18,13 +18,9 @@ from greywhale.measure.swings import Hunting
 class SwingBounds:
     """From where on a swing counts, whatever was there before."""
 
-    limit_cycle_rad: float = limit(
-        0.01, "rad", "turns that are farther apart are a limit cycle in the rest after a move"
-    )
+    limit_cycle_rad: float = limit(0.01, "rad", "turns farther apart are a limit cycle in a rest")
     limit_cycle_turns: int = limit(3, "turns", "so many turns in one rest are a limit cycle")
-    search_cycle_rad: float = limit(
-        0.005, "rad", "a search keeps clear of the border: turns that are nearer already cost it something"
-    )
+    search_cycle_rad: float = limit(0.005, "rad", "turns that are nearer already cost a search something")
     search_cycle_turns: int = limit(2, "turns", "fewer turns too")
     chatter_at_rest_hz: float = limit(50.0, "1/s", "more large swings of the voltage at rest are chatter")
     chatter_moving_hz: float = limit(100.0, "1/s", "a gear that moves bears more of them")
@@ -46,33 +42,31 @@ class SwingBounds:
 class SwingLimits:
     """Limits of a joint's swings beside those before. `measure/swings.py` says what each kind of swinging is."""
 
-    max_unrest_rad: float = limit(0.005, "rad rms", "more unrest than this anybody sees, unless it was there before")
+    max_unrest_rad: float = limit(0.005, "rad rms", "more anybody sees, unless it was there before")
     unseen_unrest_rad: float = limit(
         0.0015,
         "rad rms",
-        "less unrest nobody sees, whatever it was before; other motions show more of it than a check, so the limit "
-        "keeps clear of twice what it was",
+        "less nobody sees; other motions show up to twice the check's",
     )
-    unseen_rattle_rad: float = limit(0.003, "rad rms", "less rattling nobody sees, whatever it was before")
+    unseen_rattle_rad: float = limit(0.003, "rad rms", "less rattling nobody sees")
     unrest_growth: float = limit(1.5, "times before", "unrest may grow so much, between the two sizes above")
     rattle_growth: float = limit(2.0, "times before", "rattling may grow so much, up to what a moving joint may rattle")
     voltage_growth: float = limit(
         1.1,
         "times before",
-        "chatter and ripple differ by a few per cent with the same controllers",
+        "chatter and ripple; the same controllers differ by some per cent",
         MEASURED_IN_TRIALS,
     )
     repeat_share: float = limit(
         0.04,
         "of before",
-        "of 100 pairs of recordings with the same controllers 99 differ by less, wherever friction holds a joint",
+        "99 of 100 pairs with the same controllers differ by less",
         MEASURED_IN_TRIALS,
     )
     bearable_excess: float = limit(
         1.15,
         "times the limit",
-        "unrest, rattling, chatter and ripple differ from trial to trial with the same controllers; up to this one of "
-        "them can be borne",
+        "swings differ from trial to trial; up to this one of them can be borne",
         MEASURED_IN_TRIALS,
     )
 
@@ -83,20 +77,12 @@ class SwingLimits:
 class RepeatabilityLimits:
     """Conditions for a visit of a pose, and for coming from a side."""
 
-    same_pose_rad: float = limit(
-        0.05, "rad", "rests of the leader that are no farther apart are one pose: a hand finds it again so well"
-    )
-    approach_rad: float = limit(
-        0.05, "rad", "a joint comes from the side where its leader last was farther away: friction and play are less"
-    )
-    averaged_s: float = limit(
-        0.25, "s", "the end of a rest over which angles are averaged: two periods of a hand's tremor and more"
-    )
-    calm_rad: float = limit(1e-3, "rad", "a leader that is farther from the middle of its rest begins to leave it")
-    calm_spreads: float = limit(
-        4.0, "times its median distance", "one that trembles leaves when it is farther than this"
-    )
-    still_rad: float = limit(0.02, "rad", "a follower that moves more in that time has not come to rest")
+    same_pose_rad: float = limit(0.05, "rad", "rests of the leader no farther apart are one pose")
+    approach_rad: float = limit(0.05, "rad", "a joint comes from the side where its leader last was farther away")
+    averaged_s: float = limit(0.25, "s", "the end of a rest, averaged: over two periods of a tremor")
+    calm_rad: float = limit(1e-3, "rad", "a leader farther from its rest's middle begins to leave it")
+    calm_spreads: float = limit(4.0, "times its median distance", "or, one that trembles, farther than this")
+    still_rad: float = limit(0.02, "rad", "a follower that moves more has not come to rest")
     least_visits: int = limit(2, "visits", "a standard deviation needs so many", BY_DEFINITION)
 
 

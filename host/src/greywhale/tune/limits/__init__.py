@@ -37,8 +37,8 @@ class TuningLimits:
     """All limits of a tuning, and who has the last word about what it finds."""
 
     quiet: float = limit(1.0, "", "divides the ripple that is allowed at rest", "what a person asks for")
-    by_the_arm: bool = limit(False, "", "whether the arm itself will judge: unrest on the model counts less then")
-    floors: bool = limit(True, "", "whether the least possible error on other motions is worked out")
+    by_the_arm: bool = limit(False, "", "the arm itself will judge: unrest on the model counts less")
+    floors: bool = limit(True, "", "work out the least possible error on other motions")
     model: ModelLimits = field(default=ModelLimits())
     travel: TravelLimits = field(default=TravelLimits())
     training: TrainingLimits = field(default=TrainingLimits())

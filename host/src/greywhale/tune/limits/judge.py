@@ -11,58 +11,48 @@ from greywhale.base.limits import BY_DEFINITION, MEASURED_IN_SEARCHES, MEASURED_
 class FloorLimits:
     """The least error that the supply allows to any controller (`judge/floor.py`)."""
 
-    backlash_rad2: float = limit(1e-4, "rad²", "a floor below this may be mere backlash, unless the bound says else")
-    tellable_rad2: float = limit(1e-6, "rad²", "one below a millirad is nothing that a potentiometer could tell")
+    backlash_rad2: float = limit(1e-4, "rad²", "a lower floor may be mere backlash")
+    tellable_rad2: float = limit(1e-6, "rad²", "a lower one no potentiometer could tell")
     tried_settling_s: tuple[float, ...] = limit(
         (0.001, 0.004),
         "s",
-        "settling times that the ideal law tries; a finer search finds 0.1 % at most",
+        "settling times tried; a finer search finds 0.1 % at most",
         MEASURED_ON_ARMS,
     )
     tried_brakes: tuple[float, ...] = limit(
         (0.85, 0.95, 1.1, 1.25), "of the braking curve", "when it brakes, tried for one joint after the other"
     )
     nothing_to_gain_rad2: float = limit(1e-4, "rad² in total", "below this no brake is tried")
-    rest_s: float = limit(0.3, "s", "the leader rests for so long before a move that bounds the error")
+    rest_s: float = limit(0.3, "s", "rest of the leader before a move that bounds the error")
     rest_rad: float = limit(0.004, "rad", "the leader rests within this")
-    waiting_rad: float = limit(0.01, "rad", "the follower waits for the leader when it is this close to it")
-    waiting_rad_s: float = limit(
-        0.05, "rad/s", "the follower waits when it is this slow; otherwise a move gives no bound"
-    )
+    waiting_rad: float = limit(0.01, "rad", "a follower this close to its leader waits")
+    waiting_rad_s: float = limit(0.05, "rad/s", "and is this slow; otherwise a move gives no bound")
 
 
 @dataclass(frozen=True)
 class MarginLimits:
     """Limits of a joint's rest, also on a slightly different arm; and the prices that a search pays beyond them."""
 
-    settle_s: float = limit(1.0, "s", "a rest is judged from so long after a stop on")
+    settle_s: float = limit(1.0, "s", "a rest is judged from here on")
     half_gain: float = limit(0.5, "times", "of the scenario with less loop gain", BY_DEFINITION)
     twice_gain: float = limit(2.0, "times", "of the scenario with more loop gain", BY_DEFINITION)
-    teeth_stiffness_divisor: float = limit(
-        4.0, "times", "softer teeth have so much less stiffness: recordings show it least of all"
-    )
+    teeth_stiffness_divisor: float = limit(4.0, "times", "softer teeth have so much less stiffness")
     teeth_damping_divisor: float = limit(8.0, "times", "softer teeth have so much less damping")
-    stop_shares: tuple[float, ...] = limit(
-        (0.8, -0.2), "of the reach", "where the leader stops; all joints move together, so all are shaken"
-    )
+    stop_shares: tuple[float, ...] = limit((0.8, -0.2), "of the reach", "where the leader stops, with all joints")
     first_s: float = limit(0.2, "s", "the leader rests this long before its first move")
     rest_s: float = limit(2.2, "s", "a rest in the first search")
-    long_rest_s: float = limit(
-        4.0, "s", "a rest later on, and in the judgement: an integral swings slowly", MEASURED_IN_SEARCHES
-    )
-    search_beyond: float = limit(1.15, "times", "a search keeps clear of the border: its gains are further off")
+    long_rest_s: float = limit(4.0, "s", "a later rest: an integral swings slowly", MEASURED_IN_SEARCHES)
+    search_beyond: float = limit(1.15, "times", "gains of a search are further off")
     search_chatter_share: float = limit(0.7, "of the limit", "a search already pays for this much chatter")
     search_ripple_share: float = limit(0.9, "of the limit", "a search already pays for this much ripple")
     travel_price: float = limit(0.5, "of what is possible", "for each rad/s of swinging in a limit cycle")
     chatter_price: float = limit(0.03, "of what is possible", "for as much chatter at rest as is allowed")
     fail_price: float = limit(0.15, "of what is possible", "for a scenario that fails")
-    strict_fail_price: float = limit(
-        0.6, "of what is possible", "the same for a joint that fell short in the last judgement and is searched again"
-    )
+    strict_fail_price: float = limit(0.6, "of what is possible", "the same for a joint that is searched again")
     teeth_price: float = limit(
         0.08,
         "of what is possible",
-        "for a failure with softer teeth: what no recording shows well is no reason to follow badly",
+        "for a failure with softer teeth, which recordings hardly show",
     )
     ripple_price: float = limit(0.05, "of what is possible", "for as much ripple at rest as is allowed")
     loud_price: float = limit(1.0, "of what is possible", "the same for what is beyond that")
@@ -76,25 +66,25 @@ class ChoiceLimits:
     worse_ratio: float = limit(
         1.03,
         "times its best cost elsewhere",
-        "a joint that costs more among the others tries its other candidates",
+        "a joint that costs more tries its other candidates",
     )
     joint_slack: float = limit(
         1.01,
         "times the cost before",
-        "no joint may lose more: one that stays as it was feels its neighbours' new moves a little",
+        "no joint may lose more: it feels its neighbours' new moves a little",
     )
     kept_joint_slack: float = limit(
         1.05,
         "times the cost before",
-        "a joint that keeps its controller may lose so much before its neighbours step back",
+        "a joint that keeps its controller may lose so much",
         MEASURED_IN_SEARCHES,
     )
     enough_gain_share: float = limit(
         0.5,
         "of what each joint could gain alone",
-        "another way is tried if together the joints gain less",
+        "if joints together gain less, another way is tried",
     )
-    second_chances: int = limit(3, "candidates", "a joint that fails gets so many others, the best first")
+    second_chances: int = limit(3, "candidates", "others for a joint that fails, the best first")
     gain_reductions: tuple[tuple[float, float], ...] = limit(
         (
             *((1.0, ki) for ki in (0.5, 0.2, 0.0)),
@@ -104,24 +94,17 @@ class ChoiceLimits:
             (0.35, 0.0),
         ),
         "of the best's Ku and Ki",
-        "these compete too: full voltage may shake gears, and an integral swing in friction, that were quiet in the "
-        "search",
+        "these compete too: gears and integrals may be less quiet than in the search",
         MEASURED_IN_SEARCHES,
     )
-    unfit_cost: float = limit(
-        100.0, "", "of a joint that falls short of the standard: more than any controller costs", BY_DEFINITION
-    )
+    unfit_cost: float = limit(100.0, "", "of a joint that falls short: more than any controller costs", BY_DEFINITION)
     unrest_weight_on_arm: float = limit(
         0.1,
         "",
-        "of unrest if the arm itself will judge: a joint that only the model calls restless gets its chance there",
+        "of unrest if the arm itself will judge",
     )
-    same_ripple: float = limit(
-        1.05, "times", "ripple is a figure of noise: the same controller differs so much from one noise to another"
-    )
-    shaken_ripple: float = limit(
-        1.25, "times", "ripple may be so much more where quicker neighbours shake a joint", MEASURED_IN_SEARCHES
-    )
+    same_ripple: float = limit(1.05, "times", "one controller's ripple differs so much from one noise to another")
+    shaken_ripple: float = limit(1.25, "times", "the same where quicker neighbours shake a joint", MEASURED_IN_SEARCHES)
     worse_in_report: float = limit(1.02, "times the error before", "the report calls an error worse from here on")
 
 
@@ -132,13 +115,10 @@ class FollowingLimits:
     behind_price: float = limit(
         0.1,
         "of what is possible",
-        "the price of a class of motions that a changed joint follows less closely, unless it hunted at rest; on top "
-        "of it comes what is beyond, as a share of the error before",
+        "for a class of motions that a changed joint follows worse, unless it hunted at rest; plus what is beyond",
     )
-    abrupt_s: float = limit(0.01, "s", "of an edge of abrupt moves: a quick hand, and a leader that something pushes")
+    abrupt_s: float = limit(0.01, "s", "edge of abrupt moves: a quick hand")
     follows_worse: float = limit(
-        1.05, "times the mean squared error before", "from here on a person is told and, before an upload, asked"
+        1.05, "times the mean squared error before", "a person is told and, before an upload, asked"
     )
-    unseen_rad: float = limit(
-        1e-3, "rad rms", "and only if the error grew by this: a step of a potentiometer's reading is five times that"
-    )
+    unseen_rad: float = limit(1e-3, "rad rms", "if the error grew by this too: a fifth of a potentiometer's step")

@@ -17,16 +17,14 @@ class ModelLimits:
     slow_spread: float = limit(
         0.5,
         "of the tracking error",
-        "half of the arms that the logs allow may follow slow reaches, which show friction and gravity, so differently",
+        "half of the allowed arms may follow slow reaches so differently",
     )
-    quick_spread: float = limit(
-        0.25, "of the tracking error", "the same of quick moves, which show inertia and damping"
-    )
-    same_supply: float = limit(0.02, "of the supply", "so much may the supplies of model and board differ")
-    same_slope: float = limit(0.1, "of the slope", "so much may the slopes of their potentiometers differ")
-    same_zero_rad: float = limit(0.1, "rad", "so much may their zero angles differ")
-    same_value: float = limit(1e-3, "of the value", "so much may an arm and its own table differ: more was an edit")
-    same_gap_rad: float = limit(1e-5, "rad", "the same of gaps, which the search may leave at next to nothing")
+    quick_spread: float = limit(0.25, "of the tracking error", "the same of quick moves")
+    same_supply: float = limit(0.02, "of the supply", "difference of the supplies of model and board")
+    same_slope: float = limit(0.1, "of the slope", "of the slopes of their potentiometers")
+    same_zero_rad: float = limit(0.1, "rad", "of their zero angles")
+    same_value: float = limit(1e-3, "of the value", "of an arm and its own table: more was an edit")
+    same_gap_rad: float = limit(1e-5, "rad", "the same of gaps")
 
 
 @dataclass(frozen=True)
@@ -34,12 +32,10 @@ class TravelLimits:
     """From which voltage on a joint must move, by the model."""
 
     sigmas: float = limit(3.0, "standard deviations", "of what the model leaves open, added to the friction")
-    least_margin: float = limit(
-        0.25, "of the friction", "added at least: friction differs from place to place, and from day to day"
-    )
+    least_margin: float = limit(0.25, "of the friction", "added at least: friction differs from day to day")
     least_v: float = limit(0.3, "V", "0 would mean that nothing is known")
     max_supply_share: float = limit(
         0.8,
         "of the supply",
-        "a joint that stands gets all of the supply in the end, and the limit must lie below that",
+        "at most: a joint that stands gets all in the end",
     )

@@ -15,7 +15,7 @@ class TrainingLimits:
     levels: tuple[float, ...] = limit(
         (0.0, 1.0, 0.9, 0.4, -0.6, -0.5, 0.0, -1.0, 0.0),
         "of the reach",
-        "levels of the moves, rotated from joint to joint: sizes from 0.1 to 1, as many up as down",
+        "levels of the moves, rotated from joint to joint",
     )
     hold_s: float = limit(1.2, "s", "a level is held for so long")
     reach_rad: float = limit(1.0, "rad", "the moves go no farther to either side")
@@ -26,14 +26,10 @@ class TrainingLimits:
     slow_periods_s: tuple[float, ...] = limit((2.3, 4.1), "s", "slow following is a sum of waves of these periods")
     slow_shares: tuple[float, ...] = limit((0.4, 0.6), "of its size", "how large each of these waves is")
     slow_rad: float = limit(0.15, "rad", "their size is small beside the moves")
-    ease_s: float = limit(
-        0.4, "s", "every joint rests in its own part of slow following; it stops and starts within this time"
-    )
-    soon_s: float = limit(
-        0.1, "s", "a moment weighs this much, and the time since the leader last moved: a late error counts more"
-    )
-    moving_rad: float = limit(0.02, "rad", "the leader moves while it changes by this much: a tremor is far smaller")
-    moving_s: float = limit(0.1, "s", "the leader moves if it changes so much within this time")
+    ease_s: float = limit(0.4, "s", "each joint rests once in slow following, eased so")
+    soon_s: float = limit(0.1, "s", "a moment weighs this and the time since the leader last moved")
+    moving_rad: float = limit(0.02, "rad", "a leader that changes by this much moves")
+    moving_s: float = limit(0.1, "s", "within this time")
 
 
 @dataclass(frozen=True)
@@ -42,34 +38,27 @@ class SpaceLimits:
 
     kp_range: tuple[float, float] = limit((0.1, 10.0), "1/rad", "Kp only stretches the axis of the sets")
     kd_range: tuple[float, float] = limit((1e-3, 5.0), "1/rad over 20 ms", "so does Kd")
-    usual_kp: float = limit(1.0, "1/rad", "where sets are searched too: sets of full width then reach to 1 rad")
+    usual_kp: float = limit(1.0, "1/rad", "where sets are searched too: full ones reach to 1 rad")
     usual_kd: float = limit(0.3, "1/rad over 20 ms", "the same: to 170 rad/s")
     slow_ki: float = limit(
         30.0,
         "V/(rad s)",
-        "a smaller Ki does next to nothing in the time of a move, so it is searched as it is, a larger one by its "
-        "logarithm",
+        "a smaller Ki is searched as it is, a larger one by its logarithm",
     )
-    ku_beyond: float = limit(
-        2.0, "times the supply", "Ku may exceed the supply: full voltage then comes before full height"
-    )
-    least_ku_v: float = limit(3.0, "V", "enough for friction: with a Ku of 0 a controller would do nothing")
+    ku_beyond: float = limit(2.0, "times the supply", "Ku may be this: full voltage then comes before full height")
+    least_ku_v: float = limit(3.0, "V", "enough for friction: a Ku of 0 would do nothing")
 
 
 @dataclass(frozen=True)
 class CostLimits:
     """The cost of a controller's error, beside what is possible (`search/objective.py`)."""
 
-    rms_weight: float = limit(
-        6.0, "", "of the root of the mean square, which the paper measures, beside that of the mean size"
-    )
+    rms_weight: float = limit(6.0, "", "of the root of the mean square beside the mean size")
     rattle_weight: float = limit(
         9.0, "", "of rattling, as an error: with less, a roll rattled more than before", MEASURED_IN_SEARCHES
     )
     louder_weight: float = limit(3.0, "times rattle_weight", "of what is beyond the rattling from before")
-    unheard_rad: float = limit(
-        1e-3, "rad", "rattling below this is never louder: a board's angle has steps of a quarter of it"
-    )
+    unheard_rad: float = limit(1e-3, "rad", "less rattling is never louder: four steps of a board's angle")
     chatter_weight: float = limit(0.3, "", "of the chatter that a moving gear bears at most")
     shaking_weight: float = limit(1.0, "", "of the rattling at which the margin while moving is lost")
     bearable_share: float = limit(
@@ -81,6 +70,6 @@ class CostLimits:
     least_room_share: float = limit(
         0.1,
         "of the floor",
-        "the room between the least error and that from before is no less: a division by it would magnify noise",
+        "least room between the least error and that before: it divides",
     )
     least_room_rad: float = limit(0.004, "rad", "that room is never less than this")
