@@ -29,9 +29,9 @@ FAULTS_HEAD = """## The faults and how soon the motors are off
 
 From the moment at which the cause began to the drivers' enable pin, the longest of all moments on each board,
 to 0.25 ms. The [link reference](link.md#fault) has causes and remedies. Without a time: other faults may end the
-trial as well, see its row below. Not in the table: `params` is found at start, with the motors off; the times of `tracking`,
-`stalled` and `unrest` are parameters; a hang turns the motors off as `late_tick` before the watchdog restarts the
-board, if interrupts are on.
+trial as well, see its row below. Not in the table: `params` is found at start, with the motors off; the times of
+`tracking`, `stalled` and `unrest` are parameters; a hang turns the motors off as `late_tick` before the watchdog
+restarts the board, if interrupts are on.
 """
 
 COLUMNS = ("tried", "trials", "violations", "worst", "seen")
