@@ -70,14 +70,14 @@ PART = Part(
     "From a fault to the motors off",
     f"""The real images on both simulated boards with the default arm, a person's motion and the paper's controllers
         before and after tuning, those with the numbers of travel that `tune` works out for this arm. At {MOMENTS:,}
-        random moments of a run, and of a tick, each fault begins. The motors must be off within {AT_ONCE_MS:g} ms;
+        random moments of a run each fault begins. The motors must be off within {AT_ONCE_MS:g} ms;
         within {LEASE_MS + 2} ms for the lease, 20 ms for a hang (the watchdog's time) and for a wire that touches
         only 2 ms in 10, 45 ms for an input that floats, 30 ms for a flood, 20 ms for a
         leader that takes 20 ms to jump, 24 ms for a supply that sinks (the
         brown-out detector acts after 23), 103 ms for a flipped bit. Some faults show only once the person moves that
-        joint. Then a way counts, at most {FARTHEST_RAD} rad: of the follower where a motor does not obey (dead,
-        reversed, blocked) or a potentiometer turns the other way, and that part of it by which the true error has
-        grown where one lies. `ms` is the longest time, `rad` the greatest such way.""",
+        joint. Then a way counts, at most {FARTHEST_RAD} rad: of the follower where a motor does not obey or a
+        potentiometer turns the other way, or by which the true error has grown where one lies. `ms` is the longest
+        time, `rad` the greatest such way.""",
     (
         "firmware/lib",
         "firmware/src",

@@ -53,18 +53,16 @@ def pieces(share: float) -> list[Piece]:
 PART = Part(
     "lies",
     "Slow lies, and two faults at once",
-    f"""Nothing is promised here, so nothing counts as a violation: the board finds these lies late or never. Boards,
-        arm, motions and controllers are those of the faults above, with {MOMENTS} moments, half of them with the tuned
-        controllers and the numbers of travel that `tune` works out, and {PATIENCE_S:g} s from each. `rad` is the
-        greatest way by which the true error has grown until the motors were off or the time was over; "{FAR}" counts
-        the trials with more. Part of that is the lag of a follower with nothing wrong, see the first rows. `V` is the
-        load, in volts at the motor, under which an honest joint would show the same readings at the same voltages, 95 %
-        of the time: where that is no more than of a joint that a hand holds, no check can tell the lie from the hand. A
-        reading that drifts, or loses gain slowly, is followed: by its reading the joint moves about as its voltage
-        says, so the error is what the reading is wrong by. A reading that comes late, or turns too little, lets the
-        joint overshoot. A joint whose frozen reading holds it back stands still, but with its motor reversed too, what
-        should hold it against gravity drives it. Where this matters, keep the emergency stop at hand, and look at the
-        arm.""",
+    f"""Nothing is promised here: the board finds these lies late or never. Boards, arm, motions and controllers are
+        those of the faults above, with {MOMENTS} moments, half of them with the tuned controllers and the numbers of
+        travel that `tune` works out, and {PATIENCE_S:g} s from each. `rad` is the greatest way by which the true
+        error has grown until the motors were off or the time was over (the first rows show the lag with nothing
+        wrong); "{FAR}" counts the trials with more. `V` is the load, in volts at the motor, under which an honest
+        joint would show the same, 95 % of the time: where that is no more than of a joint that a hand holds, no check
+        can tell the lie from the hand. A reading that drifts, or loses gain slowly, is followed; one that comes late,
+        or turns too little, lets the joint overshoot. A joint whose frozen reading holds it back stands still, but
+        with its motor reversed too, what should hold it against gravity drives it. Keep the emergency stop at hand,
+        and look at the arm.""",
     (*faults.PART.depends, "tools/attack/load.py", "tools/attack/slow_lies.py", "tools/attack/parts/faults.py"),
     pieces,
     run,

@@ -86,19 +86,18 @@ def judge_replies(rate: int, faults: int, replies: Iterator[Reply]) -> Row:
 PART = Part(
     "link",
     "A bad line",
-    """A host works with the board (the firmware's own code on a computer): it stages sets value by value, applies and
-saves them, enables or leads, sends points, renews, asks, stops, and repeats what is not answered. On the way to the
-board bytes are hit: a flipped bit, a burst of 2 to 8 random bytes, a byte lost, doubled, inserted or swapped with the
-next, a frame cut short, two frames spliced, 1 to 40 bytes of garbage between frames. Each is as likely as the others.
+    """A host works with the board (the firmware's own code on a computer) by requests of all kinds, and repeats what is
+not answered. On the way to the board bytes are hit, each way as likely as the others: a flipped bit, a burst of 2 to 8
+random bytes, a byte lost, doubled, inserted or swapped with the next, a frame cut short, two frames spliced, 1 to 40
+bytes of garbage between frames.
 
 What must hold: a set that runs is the one that this host meant, value by value. A stop that is understood turns the
-motors off. No damaged frame starts the motors. Every frame that comes whole behind a zero is understood. So after a
-fault the next whole frame but one is: within 108 bytes, two of the longest frames, which is 1.1 ms at 1 Mbaud.
+motors off. No damaged frame starts the motors. Every frame that comes whole behind a zero is understood: within 108
+bytes after a fault, two of the longest frames, which is 1.1 ms at 1 Mbaud.
 
-A CRC of 16 bits lets some damage through: these are the frames that passed by chance, and some of them acted (staged a
-value that the CRC of the apply then refused, moved the reference by a wrong step, set another lease). Of damage
-without order one piece in 65,536 has the right CRC, and COBS refuses most of those as well. More than that would be
-violations, in every row.
+A CRC of 16 bits lets some damage pass by chance, one piece in 65,536, and COBS refuses most of those; some of these
+frames acted (staged a value that the CRC of the apply then refused, moved the reference by a wrong step, set another
+lease). More than that would be violations.
 
 The other way, the host's decoder takes what a board sends, samples and status, over the same line.""",
     (*depends(PROGRAM), "tools/attack/chance.py", "host/src/greywhale/protocol"),
