@@ -1,4 +1,4 @@
-"""What a candidate costs, slowly in numpy as docs/tune.md has it: the reference of host/native/score."""
+"""The cost of a candidate, slowly in numpy, by the formulas of tune.search.objective: the reference of host/native/score."""
 
 from __future__ import annotations
 

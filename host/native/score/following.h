@@ -1,4 +1,4 @@
-// How candidates follow a motion, and what it costs beside what is possible. docs/tune.md says why it costs so much.
+// How candidates follow a motion, and what it costs beside what is possible. tune/search/objective.py has the formulas.
 #pragma once
 
 #include <cstddef>

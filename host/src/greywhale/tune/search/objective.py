@@ -19,8 +19,18 @@ cannot be helped. To this come, in every class,
 The cost of the class is the root of this sum, because the last tenth of the way matters more than the first. Large
 moves count half, and the two classes of fine following the other half. Of the plants, the mean counts half, and the
 worst plant the other half.
-`margins` adds the price of a joint that does not come to rest. The weights are in `CostLimits`. All of it is worked out
-by `host/native/score`, for a page too; docs/tune.md has the formulas, and tests/tune/reference.py repeats them slowly.
+The weights are in `CostLimits`. With E, F and B the errors of candidate, ideal controller and the one before, R and R0
+the rattling and that before, a class costs
+
+    root of  (E - F + 9 R + 27 max(0, R - R0)) / (B - F)  +  0.02 |u| / supply
+             +  0.3 max(0, chatter / 100 Hz - 0.7)  +  max(0, R / 5 mrad - 0.7)
+
+`margins` adds the price of unrest, in the mean over the plants, where quiet is the ripple that is allowed at rest:
+
+    0.05 ripple / quiet  +  max(0, ripple / quiet - 0.9)  +  for each margin at rest:
+    0.5 travel  +  0.03 max(0, chatter / 50 Hz - 0.7)  +  0.15 if it fails (softer teeth: 0.08)  +  10 if it is lost
+
+All of it is worked out by `host/native/score`, for a page too; tests/tune/reference.py repeats it slowly.
 """
 
 from __future__ import annotations
