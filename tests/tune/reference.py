@@ -1,4 +1,4 @@
-"""The cost of a candidate, slowly in numpy, by the formulas of tune.search.objective: the reference of host/native/score."""
+"""The cost of a candidate, slowly in numpy, by the formulas of tune.search.objective: host/native/score must agree."""
 
 from __future__ import annotations
 
