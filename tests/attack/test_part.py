@@ -6,7 +6,7 @@ import re
 
 from greywhale.protocol.schema import Fault
 from tools.attack.arm_faults import faults
-from tools.attack.page import INJECTED_AS, write_page
+from tools.attack.page import INJECTED_AS, write_page, write_table
 from tools.attack.part import Part, Row
 from tools.attack.run import Result
 
@@ -31,3 +31,10 @@ def test_the_page_lists_the_faults_with_their_times_on_both_boards() -> None:
     assert set(INJECTED_AS) | {"none", "late_tick", "params", "tracking", "stalled", "unrest"} == {
         fault.key for fault in Fault
     }
+
+
+def test_two_cases_of_everything_stand_side_by_side() -> None:
+    rows = [Row(f"{what}, {case}", 5, 0, {}, {"ms": ms}) for what, ms in (("a", 1), ("b", 2)) for case in ("on", "off")]
+    assert "| tried | worst, on | worst, off |" in write_table(rows)
+    assert "| b | 2 ms | 2 ms |" in write_table(rows)
+    assert "| b, off | 2 ms |" in write_table([*rows, Row("c", 5, 0, {}, {"ms": 3})])

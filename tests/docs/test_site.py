@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 
 from greywhale.cli.verbs import all_verbs
+from greywhale_sim.commands import COMMANDS
 from tools import ROOT
 
 
@@ -40,6 +41,7 @@ def test_the_site_builds_without_a_warning(site: Path) -> None:
     for page in ("index", "start", "verbs/record", "api/loop", "link", "extending"):
         assert (site / f"{page}.html").is_file(), page
     assert not re.search(r"<(?:script|link|img)[^>]+(?:src|href)=.https?:", read(site, "index"))
+    assert all(f">{name}" in read(site, "bench") for name in COMMANDS), "a command without a row"
 
 
 @pytest.mark.slow

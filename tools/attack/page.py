@@ -57,12 +57,28 @@ def write_table(rows: Iterable[Row]) -> str:
     same = {n for n in range(1, len(COLUMNS)) if len(lines) > 1 and len({line[n] for line in lines}) == 1}
     above = ", ".join(f"{lines[0][n]} {COLUMNS[n]}" for n in sorted(same) if lines[0][n])
     shown = [n for n in range(len(COLUMNS)) if n not in same]
-    table = [
-        f"| {' | '.join(COLUMNS[n] for n in shown)} |",
-        f"|{'|'.join('--:' if n in (1, 2) else '---' for n in shown)}|",
-        *(f"| {' | '.join(line[n] for n in shown)} |" for line in lines),
-    ]
+    head, cells = [COLUMNS[n] for n in shown], [[line[n] for n in shown] for line in lines]
+    marks = ["--:" if n in (1, 2) else "---" for n in shown]
+    if pairs := _side_by_side(head, cells):
+        head, cells = pairs
+        marks = marks[:1] + 2 * marks[1:]
+    table = [f"| {' | '.join(head)} |", f"|{'|'.join(marks)}|", *(f"| {' | '.join(line)} |" for line in cells)]
     return (f"In each row: {above}.\n\n" if above else "") + "\n".join(table) + "\n"
+
+
+def _side_by_side(head: list[str], cells: list[list[str]]) -> tuple[list[str], list[list[str]]] | None:
+    """Rows in pairs, where each thing was tried in the same two cases, which its name ends with; None elsewhere."""
+    found: dict[str, dict[str, list[str]]] = {}
+    for tried, *others in cells:
+        thing, _, case = tried.rpartition(", ")
+        found.setdefault(thing, {})[case] = others
+    cases = list(next(iter(found.values()), {}))
+    if "" in found or len(cases) != 2 or any(list(one) != cases for one in found.values()):
+        return None
+    return (
+        [head[0], *(f"{column}, {case}" for case in cases for column in head[1:])],
+        [[thing, *one[cases[0]], *one[cases[1]]] for thing, one in found.items()],
+    )
 
 
 def _by_name(rows: Iterable[Row]) -> list[tuple[str, list[list[str]]]]:

@@ -15,7 +15,7 @@ from pydantic import BaseModel
 from sphinx.application import Sphinx
 
 from greywhale.cli.verbs import place_of
-from greywhale_sim.faults import markdown_table
+from greywhale_sim import commands, faults
 from tools.docs.schemas import schema_name, write_schemas
 
 CODES = "Exit codes: 0 done; 1 failed; 2 bad usage; 130 interrupted (motors off, files whole)."
@@ -54,10 +54,12 @@ def name_paths(app: Sphinx, context: click.Context, lines: list[str]) -> None:
 
 
 def add_help(app: Sphinx, docname: str, source: list[str]) -> None:
-    """End the page of a verb with the verb's own help, that of `sim` with a table of the mistakes it stages first."""
+    """End the page of a verb with its own help, that of `sim` with its mistakes; give the bench its commands."""
+    if docname == "bench":
+        source[0] = source[0].replace("<!-- commands -->", commands.markdown_table())
     folder, _, verb = docname.partition("/")
     if folder == "verbs" and verb != "index":
-        source[0] += f"\n{markdown_table()}\n" * (verb == "sim") + HELP.format(verb=verb, place=place_of(verb))
+        source[0] += f"\n{faults.markdown_table()}\n" * (verb == "sim") + HELP.format(verb=verb, place=place_of(verb))
 
 
 def shorten_arrays(

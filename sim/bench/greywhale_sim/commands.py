@@ -50,6 +50,7 @@ def run(server: Server, text: str) -> CommandAnswer:
 
 
 def status(server: Server) -> CommandAnswer:
+    """Tell time, motors, voltages, angles, resets, EEPROM writes, and who is connected."""
     bench, stats = server.bench, server.board.stats()
     return {
         "time_s": round(server.bench.time_s, 6),
@@ -73,13 +74,16 @@ def status(server: Server) -> CommandAnswer:
 
 
 def leader(server: Server, file: str) -> CommandAnswer:
-    """Another motion for the person, at once: a file's, or a generated one by its name."""
+    """The person plays another motion, of a file or a generated one: at once while the arm follows, else from the next
+    enable on; quote a path with blanks."""
     motion = MOTIONS[file].make() if file in MOTIONS else load_leader(file)
     server.bench.leader.take_up(motion)
     return {"leader": file, "duration_s": motion.duration_s}
 
 
 def hand(server: Server, side: str, *words: str) -> CommandAnswer:
+    """While the motors are off the person brings an arm, or both, to these angles (rad) within some seconds (1), and
+    holds it until the next enable."""
     angles, seconds = np.array([float(word) for word in words[:4]]), float(words[4]) if len(words) == 5 else 1.0
     if side not in ("leader", "follower", "both") or not 4 <= len(words) <= 5 or not 0.0 < seconds <= 60.0:
         raise ValueError
@@ -90,6 +94,9 @@ def hand(server: Server, side: str, *words: str) -> CommandAnswer:
 
 
 def pot(server: Server, side: str, joint: str, state: str) -> CommandAnswer:
+    """A wire off with a pull-down (open) or without (floating), or shorted to the supply; frozen: the shaft does not
+    turn; slipping: it loses three tenths of every way up; loose: off for 2 ms in 230 ms; noise or mains hum; the ends
+    of its track exchanged (reversed); the shaft half a turn farther (dead-zone); wiper and end exchanged (crossed)."""
     if side not in ("leader", "follower") or not 0 <= int(joint) <= 3 or state not in (*_WIRINGS, *_POT_FAULTS):
         raise ValueError
     number = int(joint) + (4 if side == "follower" else 0)
@@ -100,22 +107,26 @@ def pot(server: Server, side: str, joint: str, state: str) -> CommandAnswer:
 
 
 def swap(server: Server, one: str, other: str) -> CommandAnswer:
+    """Exchange the wires of two potentiometers, leader0 to follower3."""
     server.bench.swap(POTS.index(one), POTS.index(other))
     return {"swapped": [one, other]}
 
 
 def mistake(server: Server, words: str) -> CommandAnswer:
+    """Stage a person's mistake, or take all back (none)."""
     if words == "list":
         return {"mistakes": {one.name: one.says for one in faults.FAULTS}}
     return {"staged": words, "says": faults.inject(server.bench, words)}
 
 
 def pins(server: Server) -> CommandAnswer:
+    """Tell the highest duty of each driver and the longest time that they were on, since the last pins."""
     duties, longest = server.bench.take_pins_seen(server.board.cycle)
     return {"duties": [round(duty, 5) for duty in duties], "longest_on_s": round(longest / CLOCK_HZ, 6)}
 
 
 def motor(server: Server, joint: str, state: str) -> CommandAnswer:
+    """Swap a motor's wires, take one off, leave a fifth of its torque, or connect another joint's driver."""
     gains = {"connected": 1.0, "reversed": -1.0, "dead": 0.0, "weak": faults.WEAK_GAIN}
     driver = int(joint) if state in gains else int(state)
     if not 0 <= int(joint) <= 3 or not 0 <= driver <= 3:
@@ -125,6 +136,7 @@ def motor(server: Server, joint: str, state: str) -> CommandAnswer:
 
 
 def estop(server: Server, action: str) -> CommandAnswer:
+    """The emergency stop's button, which closes its pin to ground."""
     if action not in ("press", "release"):
         raise ValueError
     server.bench.press_estop(action == "press")
@@ -132,6 +144,7 @@ def estop(server: Server, action: str) -> CommandAnswer:
 
 
 def clutch(server: Server, action: str) -> CommandAnswer:
+    """The clutch's pedal, which closes its pin to ground."""
     if action not in ("press", "release"):
         raise ValueError
     server.bench.press_clutch(action == "press")
@@ -139,11 +152,13 @@ def clutch(server: Server, action: str) -> CommandAnswer:
 
 
 def line(server: Server, what: str, probability: str) -> CommandAnswer:
+    """Damage or lose bytes on the line, both ways."""
     server.noise.set(what, float(probability))
     return {"flip": server.noise.flip, "lose": server.noise.lose}
 
 
 def power(server: Server, switch: str, writes: str = "0") -> CommandAnswer:
+    """Cut or restore the board's supply; off 20 cuts it after 20 more bytes written to the EEPROM."""
     if switch not in ("on", "off") or not 0 <= int(writes) <= 100_000:
         raise ValueError
     if switch == "on":
@@ -154,6 +169,7 @@ def power(server: Server, switch: str, writes: str = "0") -> CommandAnswer:
 
 
 def speed(server: Server, value: str) -> CommandAnswer:
+    """Change the speed."""
     rate = 1.0 if value == "max" else float(value)
     if not SLOWEST_SPEED <= rate <= 1.0:
         raise ValueError
@@ -162,6 +178,7 @@ def speed(server: Server, value: str) -> CommandAnswer:
 
 
 def lead(server: Server, *words: str) -> CommandAnswer:
+    """The person leads to these angles (rad) as quickly as a hand does, motors on or off; leader and hand end it."""
     angles = np.array([float(word) for word in words])
     if len(words) != 4 or not np.all(np.abs(angles) <= FARTHEST_RAD):
         raise ValueError
@@ -170,6 +187,7 @@ def lead(server: Server, *words: str) -> CommandAnswer:
 
 
 def supply(server: Server, volts: str) -> CommandAnswer:
+    """Another supply for the motors, 0 to 30 V."""
     if not 0.0 <= float(volts) <= MOST_SUPPLY_V:
         raise ValueError
     server.bench.change_supply(float(volts))
@@ -177,6 +195,7 @@ def supply(server: Server, volts: str) -> CommandAnswer:
 
 
 def load(server: Server, mass: str) -> CommandAnswer:
+    """A load at the tip, 0 to 2 kg."""
     if not 0.0 <= float(mass) <= MOST_LOAD_KG:
         raise ValueError
     server.bench.load_tip(float(mass))
@@ -184,6 +203,7 @@ def load(server: Server, mass: str) -> CommandAnswer:
 
 
 def obstacle(server: Server, joint: str, degrees: str) -> CommandAnswer:
+    """Put something hard in a joint's way, or take it away."""
     angle = None if degrees == "none" else math.radians(float(degrees))
     if not 0 <= int(joint) <= 3 or (angle is not None and not abs(angle) <= FARTHEST_RAD):
         raise ValueError
@@ -192,6 +212,7 @@ def obstacle(server: Server, joint: str, degrees: str) -> CommandAnswer:
 
 
 def push(server: Server, joint: str, torque: str) -> CommandAnswer:
+    """A hand pushes on a joint of the follower, until the next push; 0 lets go."""
     if not 0 <= int(joint) <= 3 or not abs(float(torque)) <= MOST_PUSH_NM:
         raise ValueError
     server.bench.push(int(joint), float(torque))
@@ -199,7 +220,7 @@ def push(server: Server, joint: str, torque: str) -> CommandAnswer:
 
 
 def controls(server: Server) -> CommandAnswer:
-    """The things that can be changed while a bench runs, each with its range and its value now."""
+    """Tell what of this can be changed, between which ends, and how it is now."""
     bench = server.bench
     low, high = (np.clip(ends, -FARTHEST_RAD, FARTHEST_RAD).tolist() for ends in bench.stops)
     found: CommandAnswer = {
@@ -242,3 +263,12 @@ COMMANDS: dict[str, tuple[Callable[..., CommandAnswer], str]] = {
     "speed": (speed, f"{SLOWEST_SPEED:g}..1|max"),
     "controls": (controls, ""),
 }
+
+
+def markdown_table() -> str:
+    """All commands for the documentation, each with what its function says."""
+    rows = []
+    for name, (command, usage) in COMMANDS.items():
+        words = f"{name} {usage}".strip().replace("|", chr(92) + "|")
+        rows.append(f"| `{words}` | {' '.join((command.__doc__ or '').split())} |")
+    return "\n".join(["| command | does |", "|---|---|", *rows])
