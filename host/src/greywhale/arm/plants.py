@@ -1,6 +1,12 @@
 """Arms as rows of numbers, in the form that the arm's equations use: SI units at the joints' output shafts.
 
-docs/closed_loop.md explains each column. Columns go by name.
+Columns go by name, with the constants of docs/arm.md:
+
+- of the links ``yaw`` Iyy0, ``ixx1``, ``iyy1`` Iyy1 + P1, ``ixx23`` X, ``iyy23`` Y, ``izz23`` e, ``ixx3``, ``izz1``
+  Izz1 + P1, ``coupling`` h, ``gravity1`` g S1, ``gravity2`` g S2;
+- of a joint, at its output shaft, ``torque_per_volt``, ``inertia``, ``damping``, ``resistance``, ``coulomb``,
+  ``breakaway``, ``stribeck_velocity``, ``load_friction``, ``creep_velocity``, ``half_gap``, ``stiffness``,
+  ``mesh_damping``, ``drag``, ``stop_min``, ``stop_max``, ``pot_play``, ``pot_lag``, ``lost_up``, ``lost_down``.
 """
 
 from __future__ import annotations
