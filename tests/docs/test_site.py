@@ -42,6 +42,7 @@ def test_the_site_builds_without_a_warning(site: Path) -> None:
         assert (site / f"{page}.html").is_file(), page
     assert not re.search(r"<(?:script|link|img)[^>]+(?:src|href)=.https?:", read(site, "index"))
     assert all(f">{name}" in read(site, "bench") for name in COMMANDS), "a command without a row"
+    assert "excitation.rest_s" in read(site, "limits")
 
 
 @pytest.mark.slow

@@ -15,7 +15,8 @@ from pydantic import BaseModel
 from sphinx.application import Sphinx
 
 from greywhale.cli.verbs import place_of
-from greywhale_sim import commands, faults
+from greywhale_sim import faults
+from tools.docs.made import MADE
 from tools.docs.schemas import schema_name, write_schemas
 
 CODES = "Exit codes: 0 done; 1 failed; 2 bad usage; 130 interrupted (motors off, files whole)."
@@ -54,9 +55,10 @@ def name_paths(app: Sphinx, context: click.Context, lines: list[str]) -> None:
 
 
 def add_help(app: Sphinx, docname: str, source: list[str]) -> None:
-    """End the page of a verb with its own help, that of `sim` with its mistakes; give the bench its commands."""
-    if docname == "bench":
-        source[0] = source[0].replace("<!-- commands -->", commands.markdown_table())
+    """End the page of a verb with its own help, that of `sim` with its mistakes; put what is made where it belongs."""
+    for marker, text in MADE.items():
+        if marker in source[0]:
+            source[0] = source[0].replace(marker, text())
     folder, _, verb = docname.partition("/")
     if folder == "verbs" and verb != "index":
         source[0] += f"\n{faults.markdown_table()}\n" * (verb == "sim") + HELP.format(verb=verb, place=place_of(verb))
