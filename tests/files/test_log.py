@@ -20,7 +20,8 @@ from greywhale.base.errors import UserError
 from greywhale.base.formats import csv_file
 from greywhale.files.log import Log, LogWriter, read_log
 from greywhale.files.log.check import Check
-from greywhale.files.log.layout import HEADING, STATES, Origin
+from greywhale.files.log.held import Packed
+from greywhale.files.log.layout import HEADING, QUANTITIES, STATES, Origin
 from greywhale.files.log.reader import parse_rows
 
 ORIGIN = Origin("1.2.3", "mega2560", 0xBEEF, 20, 5)
@@ -276,13 +277,34 @@ def test_only_an_unfinished_log_may_end_in_the_middle_of_a_line(path: Path) -> N
 def test_a_log_takes_no_more_memory_than_its_numbers(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(csv_file, "BLOCK_BYTES", 1 << 14)
     write(path, 20_000)
+    read_log(path)  # what is loaded when it is first used is not the log's
     tracemalloc.start()
     log = read_log(path)
     _, most = tracemalloc.get_traced_memory()
     tracemalloc.stop()
     assert len(log.time) == 20_000
     block = 40 * csv_file.BLOCK_BYTES  # what the parsing of one block takes
-    assert most < 20_000 * 13 * 8 + 20_000 + block
+    assert most < 20_000 * (8 + 12 * 4) + 20_000 + block
+
+
+@pytest.mark.parametrize("odd", [-0.0, 0.1234567, 1e-9])
+def test_numbers_come_back_to_the_bit_also_where_they_are_no_whole_millionths(path: Path, odd: float) -> None:
+    angles = np.array([-2.345678, 0.000001, 7.999999, 0.3])
+    lines = [f"{row / 1000:.6f},{','.join(map(repr, 3 * angles.tolist()))},following\n" for row in range(9)]
+    lines[4] = lines[4].replace("-2.345678", repr(odd), 1)
+    path.write_text(HEADING + "\n" + "".join(lines))
+    log = read_log(path)
+    assert {name: isinstance(log.held(name), Packed) for name in QUANTITIES} == {
+        "leader": False, "follower": True, "voltage": True,
+    }  # fmt: skip
+    wanted = np.tile(angles, (9, 1))
+    assert log.follower.tobytes() == log.voltage.tobytes() == wanted.tobytes()
+    wanted[4, 0] = odd
+    assert log.leader.tobytes() == wanted.tobytes()
+    part = log.part(slice(3, 6))
+    assert part.leader.tobytes() == wanted[3:6].tobytes()
+    assert part.held("follower")[1, 2] == 7.999999
+    assert part.state.tolist() == ["following"] * 3
 
 
 @given(st.text())

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from greywhale.files.log import Log
@@ -58,6 +60,6 @@ def test_pieces_are_whole_and_keep_their_rows_together() -> None:
 
 def test_rows_without_following_motors_are_left_out() -> None:
     log = log_of(300, {0: (0, 300)})
-    log.state[: 100 * RATE] = "soft_star"
-    kept = informative(log, 50.0)
+    state = np.where(log.time < 100.0, "soft_start", "following")
+    kept = informative(replace(log, state=state), 50.0)
     assert kept.time.min() >= 100.0

@@ -42,7 +42,7 @@ def test_mcap_core_reads_every_sample_and_fact(recording: Recording, tmp_path: P
     found = json.loads(done.stdout)
     assert (found["topics"], found["schemas"]) == (["/arm"], ["greywhale.Sample"])
     assert [int(time) for time in found["times"]] == np.round(recording.log.time * 1e9).astype(int).tolist()
-    for name, _, column in recording.columns:
+    for name, column in ((column.name, column[:]) for column in recording.columns):
         np.testing.assert_array_equal([sample[name] for sample in found["samples"]], column)
     assert [sample["state"].lower() for sample in found["samples"]] == recording.log.state.tolist()
     assert found["metadata"]["greywhale log"] == recording.log.facts
@@ -70,9 +70,9 @@ def test_octave_reads_every_number_and_word(recording: Recording, tmp_path: Path
 def test_duckdb_reads_every_column_and_fact(recording: Recording, tmp_path: Path) -> None:
     file = exported(recording, "parquet", tmp_path)
     held = duckdb.sql(f"select * from read_parquet('{file}')").fetchnumpy()
-    assert list(held) == ["time_s", *(name for name, _, _ in recording.columns), "state"]
+    assert list(held) == ["time_s", *(column.name for column in recording.columns), "state"]
     np.testing.assert_array_equal(held["time_s"], recording.log.time)
-    for name, _, column in recording.columns:
+    for name, column in ((column.name, column[:]) for column in recording.columns):
         np.testing.assert_array_equal(held[name], column)
     assert [str(word) for word in held["state"]] == recording.log.state.tolist()
     facts = duckdb.sql(f"select key, value from parquet_kv_metadata('{file}')").fetchall()

@@ -117,11 +117,12 @@ def test_lerobot_reads_the_samples_and_finds_the_same_statistics(
     assert set(read["tasks"]) == {"Wave"}
     assert read["names"].tolist()[3:5] == ["wrist_roll.pos", "yaw.voltage"]
     for (begin, end), log in zip(read["begins"], exported[1], strict=True):
-        episode = frames_of(log, 30)
+        episode, frames = frames_of(log, 30), slice(0, end - begin)
+        window = episode.windows(frames)
         for key, values in (
-            ("action", episode.action),
-            ("observation.state", episode.state),
-            ("observation.joints_window", episode.window),
+            ("action", episode.actions(frames)),
+            ("observation.state", window[:, -1]),
+            ("observation.joints_window", window),
         ):
             np.testing.assert_array_equal(read[key][begin:end], values)
     keys = [key for key in read.files if key.startswith("found/")]

@@ -79,7 +79,7 @@ def test_voltages_are_drawn_within_their_limit() -> None:
     """The limit is the supply where that is known, else the largest voltage in the logs."""
     one = trace(replace(log(0.8), voltage=6.0 * log(0.8).leader), "before")
     assert one.voltage is not None
-    largest = f"largest voltage, {abs(one.voltage).max():.1f} V"
+    largest = f"largest voltage, {max(one.voltage.max(), -one.voltage.min()):.1f} V"
     assert labels([one]) == ["leader", "follower, before", "voltage", largest]
     known = replace(one, supply_v=12.0)
     assert labels([known])[-1] == "voltage limit, 12 V"

@@ -59,7 +59,7 @@ def test_mcap(recording: Recording, tmp_path: Path) -> None:
     times = [raw.log_time for _, _, raw, _ in found]
     assert times == [raw.publish_time for _, _, raw, _ in found] == np.round(log.time * 1e9).astype(int).tolist()
     assert len(recording.columns) == 16
-    for name, _, column in recording.columns:
+    for name, column in ((column.name, column[:]) for column in recording.columns):
         np.testing.assert_array_equal([getattr(sample, name) for *_, sample in found], column)
     assert [STATES[sample.state] for *_, sample in found] == log.state.tolist()
     assert metadata["greywhale log"] == log.facts
@@ -88,7 +88,8 @@ def test_parquet(recording: Recording, tmp_path: Path) -> None:
     out, log = tmp_path / "log.parquet", recording.log
     write("parquet", [recording], out, NONE)
     held = parquet.read_table(out)
-    for name, unit, column in (("time_s", "s", log.time), *recording.columns):
+    columns = ((column.name, column.unit, column[:]) for column in recording.columns)
+    for name, unit, column in (("time_s", "s", log.time), *columns):
         np.testing.assert_array_equal(held[name].to_numpy(), column)
         assert held.schema.field(name).metadata == {b"unit": unit.encode()}
     assert held["state"].to_pylist() == log.state.tolist()
@@ -125,14 +126,6 @@ def test_what_bam_needs_is_named(recording: Recording, tmp_path: Path, options: 
     with pytest.raises(UserError, match=sentence):
         write("bam", [Recording(bare)], tmp_path / "log.json", options)
     assert list(tmp_path.glob("*.json")) == []
-
-
-def test_a_log_of_one_state_has_it_in_every_row(recording: Recording) -> None:
-    """Such a log keeps the word once."""
-    words = np.broadcast_to(np.array("following"), recording.log.time.shape)
-    states = Recording(replace(recording.log, state=words)).states
-    assert states.shape == words.shape
-    assert set(states.tolist()) == {STATES.index("following")}
 
 
 def test_the_facts_are_those_of_the_header(recording: Recording, path: Path) -> None:

@@ -113,10 +113,14 @@ def _export_logs(logs: tuple[Path, ...], to: str, out: Path, options: ExportOpti
         require_new_folder(overwrite, out, *FORMATS[to].folder)
     else:
         require_new(overwrite, out)
-    read = [read_log(path) for path in logs]
-    warn(remark for log in read for remark in log.remarks)
-    recordings = [Recording(log, _torque(log, options.model)) for log in read]
+    recordings = (_read(path, options.model) for path in logs)  # one at a time: a log of an hour is large
     return write_logs(to, recordings, out, options)
+
+
+def _read(path: Path, model: str | None) -> Recording:
+    log = read_log(path)
+    warn(log.remarks)
+    return Recording(log, _torque(log, model))
 
 
 def _torque(log: Log, model: str | None) -> tuple[JointColumns, ...]:

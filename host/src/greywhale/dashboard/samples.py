@@ -9,7 +9,7 @@ import numpy as np
 from greywhale.base.errors import UserError
 from greywhale.dashboard.history import MOST_SAMPLES
 from greywhale.files.log import read_log
-from greywhale.files.log.layout import STATES
+from greywhale.files.log.layout import QUANTITIES
 from greywhale.protocol import schema
 from greywhale.protocol.firmware import JOINTS, TICK_S
 
@@ -38,10 +38,9 @@ def samples_of_log(path: Path) -> bytes:
         raise _too_long(path)
     rows = np.zeros(last.size, _PAYLOAD)
     rows["tick"] = ticks[last]
-    for state, word in enumerate(STATES):
-        rows["state"][log.state[last] == word] = state
-    for name, values in (("leader", log.leader), ("follower", log.follower), ("voltage", log.voltage)):
-        rows[name] = np.clip(np.rint(values[last] / schema.Sample.LSB[name]), -0x8000, 0x7FFF)
+    rows["state"] = log.places[last]
+    for name in QUANTITIES:
+        rows[name] = np.clip(np.rint(log.held(name)[last] / schema.Sample.LSB[name]), -0x8000, 0x7FFF)
     return rows.tobytes()
 
 

@@ -31,13 +31,13 @@ from threadpoolctl import threadpool_limits
 from greywhale.base.errors import UserError
 from greywhale.base.types import Floats, PerJoint
 from greywhale.files.log import Log
-from greywhale.files.log.driven import following_rows
+from greywhale.files.log.driven import as_slice, following_rows
 from greywhale.measure.delay import correlation_delay, onset_delay
 from greywhale.measure.following import follows
 from greywhale.measure.runs import REST_RAD, REST_S, Run, first_part, gap_free_runs, last_part, resting
 from greywhale.measure.step_response import StepResponse, answer, departures, worst
 from greywhale.measure.swings import RIPPLE_S, ripple_of_record
-from greywhale.protocol.firmware import TICK_S
+from greywhale.protocol.firmware import JOINTS, TICK_S
 from greywhale.protocol.joints import ALL, Joints
 
 # More overshoot than this, in per cent of the step, is no chance.
@@ -151,9 +151,8 @@ def evaluate(log: Log) -> Evaluation:
     joints, rests = [], []
     # Each of the thousands of correlations is too short for BLAS threads, which would wait for a busy core.
     with threadpool_limits(limits=1, user_api="blas"):
-        for joint in range(log.leader.shape[1]):
-            columns = log.leader[:, joint], log.follower[:, joint], log.voltage[:, joint]
-            measures, rested = _joint(*columns, measured, runs)
+        for joint in range(JOINTS):
+            measures, rested = _joint(log, joint, measured, runs)
             joints.append(measures)
             rests.append(rested)
     return Evaluation(
@@ -161,17 +160,17 @@ def evaluate(log: Log) -> Evaluation:
         total_mse=sum(joints[number].mse for number in log.joints_in_use),
         samples=int(measured.sum()),
         duration_s=sum(run.period * (run.stop - run.start - 1) for run in runs),
-        following=bool((log.state == "following").any()),
+        following=bool(log.following.any()),
         rests_s=tuple(rests),
         joints_in_use=log.joints_in_use,
         span_s=float(log.time[-1] - log.time[0]),
     )
 
 
-def _ripple(voltage: Floats, run: Run) -> float | None:
+def _ripple(log: Log, joint: int, run: Run) -> float | None:
     if abs(run.period - TICK_S) > 0.1 * TICK_S or run.stop - run.start < 2 * RIPPLE_S / TICK_S:
         return None
-    return float(ripple_of_record(voltage[run.slice, None])[0])
+    return float(ripple_of_record(log.held("voltage")[run.slice, [joint]])[0])
 
 
 def _mean_square(error: Floats) -> float:
@@ -183,13 +182,10 @@ def _mean_error(error: Floats) -> float | None:
     return float(np.mean(np.abs(error))) if error.size else None
 
 
-def _joint(
-    leader: Floats,
-    follower: Floats,
-    voltage: Floats,
-    measured: NDArray[np.bool_],
-    runs: list[Run],
-) -> tuple[JointMeasures, float]:
+def _joint(log: Log, joint: int, measured: NDArray[np.bool_], runs: list[Run]) -> tuple[JointMeasures, float]:
+    longest = max(runs, key=lambda run: run.stop - run.start)
+    ripple = _ripple(log, joint, longest)  # before there are angles: a log of an hour is large
+    leader, follower = (log.held(name)[:, joint] for name in ("leader", "follower"))
     at_rest, at_end, at_begin = np.zeros((3, len(leader)), dtype=bool)
     onsets: list[float] = []
     answers: list[StepResponse] = []
@@ -205,12 +201,10 @@ def _joint(
             onsets += [] if onset is None else [onset * run.period]
             found = answer(led, followed, rest, step, run.period)
             answers += [] if found is None else [found]
-    longest = max(runs, key=lambda run: run.stop - run.start)
     overshoot, settling = worst(answers)
     final = at_end & ~at_begin
     settled = final if final.any() else at_end
-    # Rows are copied only where some are left out, and one copy is gone before the next: a log of an hour is large.
-    part = slice(None) if measured.all() else measured
+    part = as_slice(measured)  # one copy is gone before the next: a log of an hour is large
     measures = JointMeasures(
         mse=_mean_square(leader[part] - follower[part]),
         steady_state_error=_mean_error(leader[settled] - follower[settled]),
@@ -221,7 +215,7 @@ def _joint(
         overshoot_percent=overshoot,
         settling_s=settling,
         unsettled_steps=sum(one.settling_s is None for one in answers),
-        ripple_v=_ripple(voltage, longest),
+        ripple_v=ripple,
         settling_error=_mean_error(leader[at_rest] - follower[at_rest]),
     )
     return measures, float(np.count_nonzero(at_rest) * longest.period)

@@ -22,6 +22,7 @@ from greywhale.base.limits import numbers_in
 from greywhale.base.types import Floats
 from greywhale.files.log import Log
 from greywhale.files.log.driven import driven_rows
+from greywhale.files.log.held import Numbers
 from greywhale.measure.runs import stretches
 from greywhale.observe.limits import TORQUE_LIMITS, TorqueLimits
 from greywhale.protocol import schema
@@ -167,19 +168,19 @@ class LiveTorque:
             plants, numbers_in(limits), reading_noise(arm, filter_shift, spacing_s).tolist(), delay
         )
 
-    def feed(self, time: Floats, follower: Floats, voltage: Floats, driven: NDArray[np.bool_]) -> Told:
+    def feed(self, time: Floats, follower: Numbers, voltage: Numbers, driven: NDArray[np.bool_]) -> Told:
         """Tell the torques of samples at (n,) s with (n, 4) rad and V; `driven` (n,) is true where the motors follow.
 
         Whenever they begin to, the samples before are forgotten.
         """
         shape = follower.shape
         told = Told(np.zeros(shape), np.zeros(shape), np.full(shape, Sight.OFF, np.uint8), np.zeros(shape, bool))
-        t, angles, volts = (np.ascontiguousarray(one, np.float64) for one in (time, follower + self._zero, voltage))
         for start, stop in stretches(driven):
             if start or not self._driven:
                 self._observer.restart()
             rows = slice(start, stop)
-            found = self._observer.feed(t[rows], angles[rows], volts[rows])
+            samples = (time[rows], follower[rows] + self._zero, voltage[rows])
+            found = self._observer.feed(*(np.ascontiguousarray(one, np.float64) for one in samples))
             told.torque[rows], told.half_width[rows], told.sight[rows], told.contact[rows] = found
         self._driven = bool(driven[-1])
         return told
@@ -211,7 +212,7 @@ def estimate_external_torque(log: Log, model: ArmParameters, limits: TorqueLimit
     """
     table = log.origin.table or ParameterTable.defaults()
     live = LiveTorque(model, table["filter_shift"], float(np.median(np.diff(log.time))), limits)
-    told = live.feed(log.time, log.follower, log.voltage, driven_rows(log))
+    told = live.feed(log.time, log.held("follower"), log.held("voltage"), driven_rows(log))
     contacts = contacts_in(log.time, told, log.joints_in_use)
     return ExternalTorque(model.name, told.torque, told.half_width, told.sight, contacts)
 

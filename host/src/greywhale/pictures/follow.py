@@ -16,7 +16,9 @@ import numpy as np
 from greywhale.base.errors import BadUsage
 from greywhale.base.types import Floats
 from greywhale.files.log import Log
-from greywhale.files.log.driven import following_rows
+from greywhale.files.log.driven import as_slice, following_rows
+from greywhale.files.log.held import Numbers
+from greywhale.files.log.layout import QUANTITIES
 from greywhale.measure import Evaluation, evaluate
 from greywhale.pictures import looks
 from greywhale.pictures.kinds import kind_of
@@ -48,10 +50,10 @@ class Trace:
 
     label: str
     time: Floats
-    leader: Floats
-    follower: Floats
+    leader: Numbers
+    follower: Numbers
     mse: tuple[float, ...]
-    voltage: Floats | None = None
+    voltage: Numbers | None = None
     supply_v: float | None = None  # the limit of the voltage, where it is known
     joints: Joints = ALL  # in use
 
@@ -67,13 +69,10 @@ def trace(log: Log, label: str, supply_v: float | None = None, measured: Evaluat
         table = ParameterTable.defaults()
     if supply_v is None and table is not None:
         supply_v = table.supply_v
-    following = following_rows(log)
-    part = slice(None) if following.all() else following  # without a copy of all that there is
-    time = log.time[part]
+    part = log.part(as_slice(following_rows(log)))
     mse = tuple(joint.mse for joint in (measured or evaluate(log)).joints)
-    voltage = log.voltage[part] if log.voltage.shape[1] else None
-    angles = log.leader[part], log.follower[part]
-    return Trace(label, time - time[0], *angles, mse, voltage, supply_v, log.joints_in_use)
+    numbers = {name: part.held(name) for name in QUANTITIES}
+    return Trace(label, part.time - part.time[0], mse=mse, supply_v=supply_v, joints=log.joints_in_use, **numbers)
 
 
 def draw_following(path: str | Path, traces: Sequence[Trace], title: str) -> None:
@@ -164,7 +163,7 @@ def _limits(traces: Sequence[Trace]) -> dict[str, float]:
         if one.supply_v is not None and one.voltage is not None:
             limits[f"voltage limit, {one.supply_v:g} V"] = one.supply_v
         elif one.voltage is not None:
-            largest = max(largest, float(np.max(one.voltage, initial=0.0)), -float(np.min(one.voltage, initial=0.0)))
+            largest = max(largest, float(one.voltage.max()), -float(one.voltage.min()))
     return limits | (
         {f"largest voltage, {largest:.1f} V": largest} if largest > max(limits.values(), default=0.0) else {}
     )

@@ -7,7 +7,7 @@ of `input_volts`, the supply. What this arm does not have is left out (`temp`) o
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import IO
 
@@ -16,7 +16,7 @@ import numpy as np
 from greywhale.base.errors import BadUsage, UserError
 from greywhale.base.formats.whole import write_whole
 from greywhale.files.exchange.recording import ExportOptions, Recording
-from greywhale.files.log.layout import STATES
+from greywhale.files.log.layout import QUANTITIES, STATES
 
 FULL_LOAD = 1000.0  # of the load where the duty is 1
 # Of ours, which BAM passes over: the board's clock at timestamp 0 in s, and the joint.
@@ -24,7 +24,7 @@ START, JOINT = "start_s", "joint"
 POWERED = ("soft_start", "following")
 
 
-def write(recordings: Sequence[Recording], out: Path, options: ExportOptions) -> list[Path]:
+def write(recordings: Iterable[Recording], out: Path, options: ExportOptions) -> list[Path]:
     """Write one joint of one recording. UserError where the log does not tell the supply."""
     (one,) = recordings
     log, joint = one.log, options.joint
@@ -53,16 +53,17 @@ def write(recordings: Sequence[Recording], out: Path, options: ExportOptions) ->
 
 def _entries(one: Recording, joint: int, supply: float) -> Iterator[str]:
     log = one.log
-    speed = np.gradient(log.follower[:, joint], log.time)
+    leader, follower, voltage = (log.held(name)[:, joint] for name in QUANTITIES)
+    speed = np.gradient(follower, log.time)
     powered = np.array([word in POWERED for word in STATES])
     for rows in one.chunks():
         columns = {
-            "position": log.follower[rows, joint],
+            "position": follower[rows],
             "speed": speed[rows],
-            "load": FULL_LOAD * log.voltage[rows, joint] / supply,
+            "load": FULL_LOAD * voltage[rows] / supply,
             "timestamp": np.round(log.time[rows] - log.time[0], 6),
-            "goal_position": log.leader[rows, joint],
-            "torque_enable": powered[one.states[rows]],
+            "goal_position": leader[rows],
+            "torque_enable": powered[log.places[rows]],
         }
         for values in zip(*(column.tolist() for column in columns.values()), strict=True):
             yield json.dumps(dict(zip(columns, values, strict=True)) | {"input_volts": supply})

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import importlib
 import pkgutil
-from collections.abc import Sequence
+from collections.abc import Iterable
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any, Protocol
@@ -18,7 +18,7 @@ class Writer(Protocol):
     written, and why.
     """
 
-    def __call__(self, recordings: Sequence[Recording], out: Path, options: ExportOptions) -> list[Path]: ...
+    def __call__(self, recordings: Iterable[Recording], out: Path, options: ExportOptions) -> list[Path]: ...
 
 
 @dataclass(frozen=True)
@@ -51,7 +51,7 @@ FORMATS = {
 }
 
 
-def write(name: str, recordings: Sequence[Recording], out: Path, options: ExportOptions) -> list[Path]:
+def write(name: str, recordings: Iterable[Recording], out: Path, options: ExportOptions) -> list[Path]:
     """Write recordings in the format `name`; the paths written."""
     writer: Writer = pkgutil.resolve_name(f"{__package__}.{FORMATS[name].writer}")
     return writer(recordings, out, options)

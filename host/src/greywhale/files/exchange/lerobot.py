@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import json
 import logging
-from collections.abc import Sequence
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
@@ -17,8 +17,8 @@ from numpy.typing import NDArray
 
 from greywhale.base.errors import BadUsage, UserError
 from greywhale.base.formats.whole import whole_folder
-from greywhale.files.exchange.lerobot_frames import Episode, frames_of, names_of
-from greywhale.files.exchange.recording import ExportOptions, Recording
+from greywhale.files.exchange.lerobot_frames import Episode, Form, frames_of, names_of
+from greywhale.files.exchange.recording import CHUNK_ROWS, ExportOptions, Recording
 from greywhale.protocol.joints import require_same
 
 FPS = 30
@@ -37,7 +37,7 @@ logger = logging.getLogger(__name__)
 Stats = dict[str, dict[str, NDArray[Any]]]
 
 
-def write(recordings: Sequence[Recording], out: Path, options: ExportOptions, most_mb: float = _MOST_MB) -> list[Path]:
+def write(recordings: Iterable[Recording], out: Path, options: ExportOptions, most_mb: float = _MOST_MB) -> list[Path]:
     """Write a dataset into the folder `out`, one episode a log; a data file ends before it has `most_mb` MiB.
 
     UserError where a log names no task, gives no episode, or differs from the first in joints or its samples' rate.
@@ -66,7 +66,7 @@ class _Dataset:
         self.frames = 0
         self._tasks: dict[str, int] = {}
         self._stats: list[Stats] = []
-        self._like: tuple[str, Episode] | None = None  # the first log, which all others must be like
+        self._like: tuple[str, Form] | None = None  # the first log, which all others must be like
         self._file: Any = None
         self._path, self._number, self._frames_in_file = folder, -1, 0
 
@@ -80,24 +80,27 @@ class _Dataset:
 
     def add(self, name: str, episode: Episode, task: str) -> None:
         """Append an episode."""
-        self._like = self._like or (name, episode)
-        _require_like(*self._like, name, episode)
+        self._like = self._like or (name, episode.form)
+        _require_like(*self._like, name, episode.form)
         for remark in episode.remarks:
             logger.warning("%s", remark)
-        count, number = len(episode.action), len(self.rows)
+        count, number = len(episode.places), len(self.rows)
         frame = np.arange(count)
-        columns: dict[str, NDArray[Any]] = {
-            "action": episode.action,
-            "observation.state": episode.state,
-            WINDOW: episode.window,
+        counters: dict[str, NDArray[Any]] = {
             "timestamp": (frame / self.fps).astype(np.float32),
             "frame_index": frame,
             "episode_index": np.full(count, number),
             "index": self.frames + frame,
             "task_index": np.full(count, self._tasks.setdefault(task, len(self._tasks))),
         }
-        self._write(columns, count)
-        stats = {key: _statistics(values) for key, values in columns.items()}
+        self._write(episode, counters)
+        each: dict[str, Iterable[NDArray[Any]]] = {
+            "action": episode.each_action(),
+            "observation.state": episode.each_state(),
+            WINDOW: episode.each_window(),
+            **{key: [values] for key, values in counters.items()},
+        }
+        stats = {key: _statistics(components, count) for key, components in each.items()}
         self._stats.append(stats)
         self.rows.append(
             {
@@ -129,12 +132,9 @@ class _Dataset:
         self._write_json("stats.json", {key: _aggregate([one[key] for one in self._stats]) for key in self._stats[0]})
         self._write_json("info.json", self._info(self._like[1]))
 
-    def _write(self, columns: dict[str, NDArray[Any]], count: int) -> None:
+    def _write(self, episode: Episode, counters: dict[str, NDArray[Any]]) -> None:
         """Append the frames to the data file, or to the next one where this would grow too large."""
-        import pyarrow as pa
-        import pyarrow.parquet as pq
-
-        table = pa.table({key: _column(values) for key, values in columns.items()})
+        count = len(episode.places)
         size = self._path.stat().st_size if self._file is not None else 0
         if self._file is None or size * (1 + count / self._frames_in_file) >= self.most_mb * _MB:
             self.__exit__()
@@ -142,16 +142,30 @@ class _Dataset:
             chunk, file = divmod(self._number, _FILES_PER_CHUNK)
             self._path = self.folder / _DATA.format(chunk_index=chunk, file_index=file)
             self._path.parent.mkdir(parents=True, exist_ok=True)
-            self._file = pq.ParquetWriter(self._path, table.schema)
-        self._file.write_table(table)
+        at_once = max(1, CHUNK_ROWS // episode.form.samples)
+        for begin in range(0, count, at_once):
+            self._append(episode, counters, slice(begin, begin + at_once))
         self._frames_in_file += count
 
-    def _info(self, like: Episode) -> dict[str, Any]:
+    def _append(self, episode: Episode, counters: dict[str, NDArray[Any]], frames: slice) -> None:
+        """Append some of an episode's frames to the data file."""
+        import pyarrow as pa
+        import pyarrow.parquet as pq
+
+        window = episode.windows(frames)
+        columns = {"action": episode.actions(frames), "observation.state": window[:, -1], WINDOW: window}
+        columns |= {key: values[frames] for key, values in counters.items()}
+        table = pa.table({key: _column(values) for key, values in columns.items()})
+        if self._file is None:
+            self._file = pq.ParquetWriter(self._path, table.schema)
+        self._file.write_table(table)
+
+    def _info(self, like: Form) -> dict[str, Any]:
         actions, states = names_of(like.joints, "pos"), list(like.components)
         features: dict[str, Any] = {
             "action": {"dtype": "float32", "shape": [len(actions)], "names": actions},
             "observation.state": {"dtype": "float32", "shape": [len(states)], "names": states},
-            WINDOW: {"dtype": "float32", "shape": list(like.window.shape[1:]), "names": ["sample", "component"]},
+            WINDOW: {"dtype": "float32", "shape": [like.samples, len(states)], "names": ["sample", "component"]},
             **{key: {"dtype": dtype, "shape": [1], "names": None} for key, dtype in _COUNTERS.items()},
         }
         return {
@@ -189,7 +203,7 @@ _TASK_IS_INDEX = {
 }
 
 
-def _require_like(first: str, one: Episode, name: str, other: Episode) -> None:
+def _require_like(first: str, one: Form, name: str, other: Form) -> None:
     require_same(first, one.joints, name, other.joints)
     if one.components != other.components:
         raise UserError(f"{name}: its components are not those of {first}; export them into two datasets.")
@@ -221,12 +235,11 @@ def _column(values: NDArray[Any]) -> Any:
     return pa.ListArray.from_arrays(pa.array(np.arange(frames + 1, dtype=np.int32) * samples), rows)
 
 
-def _statistics(values: NDArray[Any]) -> dict[str, NDArray[Any]]:
+def _statistics(components: Iterable[NDArray[Any]], frames: int) -> dict[str, NDArray[Any]]:
     """An episode's statistics of each component, of a window over all its samples; `count` counts frames."""
-    components = values.reshape(-1, values.shape[-1] if values.ndim > 1 else 1).T
-    each = [_statistics_of(one.astype(np.float64)) for one in components]  # one at a time: a window holds all samples
+    each = [_statistics_of(one.astype(np.float64).ravel()) for one in components]
     found = {name: np.array([one[name] for one in each]) for name in each[0]}
-    return {**found, "count": np.array([len(values)])}
+    return {**found, "count": np.array([frames])}
 
 
 def _statistics_of(values: NDArray[np.float64]) -> dict[str, Any]:

@@ -8,6 +8,7 @@ log in which no sample is missing and the motors follow all the time.
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,7 +16,8 @@ from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
 from greywhale.base.errors import UserError, counted
-from greywhale.files.exchange.recording import Recording
+from greywhale.base.types import Floats
+from greywhale.files.exchange.recording import Column, Recording
 from greywhale.files.log import Log
 from greywhale.protocol.joints import NAMES, Joints
 
@@ -25,7 +27,6 @@ _TICKS_PER_S = 1000
 # Times of a log are whole ticks to within its six digits.
 _TICK_ROUNDING = 0.01
 _SHORT = {"follower": "pos"}
-_FOLLOWING = "following"
 _LEAST_FRAMES = 2  # statistics need so many
 
 
@@ -35,16 +36,62 @@ def names_of(joints: Joints, quantity: str) -> list[str]:
 
 
 @dataclass(frozen=True)
-class Episode:
-    """One log as frames; `remarks` say what of it is left out, a sentence each."""
+class Form:
+    """The form of an episode's frames, which all of a dataset have alike."""
 
     joints: Joints
     components: tuple[str, ...]  # of the state, such as yaw.pos
     every_ticks: int  # between two samples of a window
-    action: Floats32  # (frames, joints), rad
-    state: Floats32  # (frames, components): the follower's angles in rad, the voltages in V, and what was computed
-    window: Floats32  # (frames, samples, components): of each frame the last samples, its own at the end
+    samples: int  # of a window
+
+
+@dataclass(frozen=True)
+class Episode:
+    """One log as frames, which are made when they are asked for; `remarks` say what of it is left out, a sentence each.
+
+    An action has the leader's angles in rad; a state the follower's, the voltages in V, and what was computed. A window
+    has the samples up to its frame's own, which is the last.
+    """
+
+    form: Form
+    rows: slice  # of the log
+    places: NDArray[np.int64]  # of each frame's first sample in these rows
+    asked: Sequence[Column]
+    seen: Sequence[Column]
     remarks: tuple[str, ...]
+
+    def actions(self, frames: slice) -> Floats32:
+        """The actions (frames, joints)."""
+        return self._windows(self.asked, frames)[:, -1]
+
+    def windows(self, frames: slice) -> Floats32:
+        """The windows (frames, samples, components); the states are their last samples."""
+        return self._windows(self.seen, frames)
+
+    def _windows(self, columns: Sequence[Column], frames: slice) -> Floats32:
+        places = self.places[frames]
+        first = self.rows.start + places[0]
+        rows = slice(first, self.rows.start + places[-1] + self.form.samples)
+        samples = np.column_stack([column[rows].astype(np.float32) for column in columns])
+        found = sliding_window_view(samples, self.form.samples, axis=0)[places - places[0]].transpose(0, 2, 1)
+        return np.ascontiguousarray(found)
+
+    def each_action(self) -> Iterator[Floats32]:
+        """Every component of the actions by itself, (frames,): a long episode is never whole in memory."""
+        return (one[:, -1] for one in self._each(self.asked))
+
+    def each_state(self) -> Iterator[Floats32]:
+        """Every component of the states by itself, (frames,)."""
+        return (one[:, -1] for one in self._each(self.seen))
+
+    def each_window(self) -> Iterator[Floats32]:
+        """Every component of the windows by itself, (frames, samples)."""
+        return self._each(self.seen)
+
+    def _each(self, columns: Sequence[Column]) -> Iterator[Floats32]:
+        for column in columns:
+            samples = column[self.rows].astype(np.float32)
+            yield sliding_window_view(samples, self.form.samples)[self.places]
 
 
 def frames_of(recording: Recording, fps: int) -> Episode:
@@ -69,26 +116,25 @@ def frames_of(recording: Recording, fps: int) -> Episode:
             "--enable, or leave this log out."
         )
     places = np.arange(count) * _TICKS_PER_S // (fps * every)
-    joints = list(log.joints_in_use)
-    _, *seen = recording.quantities  # the leader is the action
-    samples = np.hstack([one.values[begin:end, joints].astype(np.float32) for one in seen])
-    window = sliding_window_view(samples, width, axis=0)[places].transpose(0, 2, 1)
+    joints = log.joints_in_use
+    columns = [column for column in recording.columns if column.joint in joints]
+    _, *seen = (_SHORT.get(one.name, one.name) for one in recording.quantities)  # the leader is the action
     return Episode(
-        joints=log.joints_in_use,
-        components=tuple(name for one in seen for name in names_of(log.joints_in_use, _SHORT.get(one.name, one.name))),
-        every_ticks=every,
-        action=log.leader[begin + width - 1 + places][:, joints].astype(np.float32),
-        state=np.ascontiguousarray(window[:, -1]),
-        window=np.ascontiguousarray(window),
+        form=Form(joints, tuple(name for quantity in seen for name in names_of(joints, quantity)), every, width),
+        rows=slice(begin, end),
+        places=places,
+        asked=columns[: len(joints)],
+        seen=columns[len(joints) :],
         remarks=_remarks(log, begin, end),
     )
 
 
-def _ticks(log: Log) -> NDArray[np.int64]:
-    """The samples' times in ticks of 1 ms."""
-    exact = _TICKS_PER_S * log.time
-    ticks = np.round(exact).astype(np.int64)
-    odd = np.flatnonzero(np.abs(exact - ticks) > _TICK_ROUNDING)
+def _ticks(log: Log) -> Floats:
+    """The samples' times in whole ticks of 1 ms."""
+    off = _TICKS_PER_S * log.time
+    ticks = np.round(off)
+    off -= ticks
+    odd = np.flatnonzero(np.abs(off, out=off) > _TICK_ROUNDING)
     if odd.size:
         raise UserError(
             f"{log.name}: its sample at {log.time[odd[0]]:g} s is not at a whole millisecond, so frames would not lie "
@@ -97,9 +143,9 @@ def _ticks(log: Log) -> NDArray[np.int64]:
     return ticks
 
 
-def _longest_stretch(log: Log, ticks: NDArray[np.int64], every: int) -> tuple[int, int]:
+def _longest_stretch(log: Log, ticks: Floats, every: int) -> tuple[int, int]:
     """The first row of the longest stretch that follows without a missing sample, and the row after its last."""
-    following = log.state == _FOLLOWING
+    following = log.following
     if not following.any():
         raise UserError(
             f"{log.name}: the motors do not follow in it, so it shows no action; record with --enable, or leave it out."

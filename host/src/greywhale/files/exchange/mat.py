@@ -4,18 +4,18 @@ from __future__ import annotations
 
 import json
 import struct
-from collections.abc import Sequence
+from collections.abc import Iterable
 from pathlib import Path
 from typing import IO, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from greywhale.base.errors import UserError
 from greywhale.base.formats.whole import write_whole
 from greywhale.files.exchange.recording import ExportOptions, Recording
+from greywhale.files.log.held import Numbers
 from greywhale.files.log.layout import STATES
-from greywhale.protocol.firmware import TICK_S
+from greywhale.protocol.firmware import JOINTS, TICK_S
 
 # What a log's quantities are called in system identification: outputs and inputs. Others keep their names.
 NAMES = {"follower": "y", "voltage": "u"}
@@ -25,20 +25,20 @@ _MOST_BYTES = 1 << 31
 _DOUBLE, _INT8, _INT32, _UINT32, _MATRIX, _CLASS_DOUBLE = 9, 1, 5, 6, 14, 6
 
 
-def write(recordings: Sequence[Recording], out: Path, options: ExportOptions) -> list[Path]:
+def write(recordings: Iterable[Recording], out: Path, options: ExportOptions) -> list[Path]:
     """Write one recording: numbers by the samples' rows, `state` as places in `states`, which count from 1."""
     from scipy import io
 
     (one,) = recordings
     log = one.log
     columns = {NAMES.get(quantity.name, quantity.name): quantity.values for quantity in one.quantities}
-    if log.time.size * log.leader.shape[1] * log.time.itemsize >= _MOST_BYTES:
+    if log.time.size * JOINTS * log.time.itemsize >= _MOST_BYTES:
         raise UserError(
             f"{log.name}: {log.time.size} rows are more than a MAT-file of version 5 takes; use --to parquet or npz."
         )
     small: dict[str, Any] = {
         "Ts": TICK_S * log.origin.every_ticks if log.origin.every_ticks else float(np.median(np.diff(log.time))),
-        "state": (one.states + 1)[:, None],
+        "state": (log.places + 1)[:, None],
         "states": np.array(STATES, dtype=object),
         "names": np.array(list(columns), dtype=object),
         "units": np.array([quantity.unit for quantity in one.quantities], dtype=object),
@@ -55,7 +55,7 @@ def write(recordings: Sequence[Recording], out: Path, options: ExportOptions) ->
     return [out]
 
 
-def _add_matrix(file: IO[bytes], name: str, values: NDArray[np.float64]) -> None:
+def _add_matrix(file: IO[bytes], name: str, values: Numbers) -> None:
     """Append a variable (rows, columns) to a MAT-file, one column after another."""
     rows, columns = values.shape
     label = name.encode("ascii")
@@ -63,5 +63,5 @@ def _add_matrix(file: IO[bytes], name: str, values: NDArray[np.float64]) -> None
     head = struct.pack("<IIII", _UINT32, 8, _CLASS_DOUBLE, 0) + struct.pack("<IIii", _INT32, 8, rows, columns)
     head += struct.pack("<II", _INT8, len(label)) + label + bytes(-len(label) % 8)
     file.write(struct.pack("<II", _MATRIX, len(head) + 8 + size) + head + struct.pack("<II", _DOUBLE, size))
-    for column in values.T:
-        file.write(np.ascontiguousarray(column, dtype="<f8").data)
+    for column in range(columns):
+        file.write(np.ascontiguousarray(values[:, column], dtype="<f8").data)

@@ -6,7 +6,7 @@ The time of a message is the board's. Its schema lies in the file, and so do the
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import IO, Any
 
@@ -26,7 +26,7 @@ FACTS, UNITS = "greywhale log", "greywhale units"  # names of the metadata
 _VARINT, _EIGHT_BYTES = 0, 1
 
 
-def write(recordings: Sequence[Recording], out: Path, options: ExportOptions) -> list[Path]:
+def write(recordings: Iterable[Recording], out: Path, options: ExportOptions) -> list[Path]:
     """Write one recording; times are whole ns."""
     (one,) = recordings
     mcap = import_extra("--to mcap", "mcap", "mcap.writer")
@@ -39,7 +39,7 @@ def write(recordings: Sequence[Recording], out: Path, options: ExportOptions) ->
         for number, (time_ns, message) in enumerate(_messages(one)):
             writer.add_message(channel, time_ns, message, time_ns, number)
         writer.add_metadata(FACTS, one.log.facts)
-        writer.add_metadata(UNITS, {name: unit for name, unit, _ in one.columns})
+        writer.add_metadata(UNITS, {column.name: column.unit for column in one.columns})
         writer.finish()
 
     write_whole(out, fill)
@@ -58,8 +58,8 @@ def schema_of(one: Recording) -> bytes:
     kind = descriptors.FieldDescriptorProto
     common: dict[str, Any] = {"label": kind.LABEL_OPTIONAL}
     message.field.add(name="state", number=1, type=kind.TYPE_ENUM, type_name=f".{PACKAGE}.{ENUM}", **common)
-    for number, (name, _, _) in enumerate(one.columns, 2):
-        message.field.add(name=name, number=number, type=kind.TYPE_DOUBLE, **common)
+    for number, column in enumerate(one.columns, 2):
+        message.field.add(name=column.name, number=number, type=kind.TYPE_DOUBLE, **common)
     serialized: bytes = found.SerializeToString()
     return serialized
 
@@ -68,19 +68,19 @@ def _messages(one: Recording) -> Iterator[tuple[int, bytes]]:
     """The time of each sample in ns, and its message. All have one length, so numpy encodes many at once."""
     columns = one.columns
     tags = [_varint(1 << 3 | _VARINT), *(_varint(number << 3 | _EIGHT_BYTES) for number in range(2, len(columns) + 2))]
-    values: list[tuple[str, str]] = [("state", "u1"), *((name, "<f8") for name, _, _ in columns)]
+    values: list[tuple[str, str]] = [("state", "u1"), *((column.name, "<f8") for column in columns)]
     kinds = [
         pair for tag, value in zip(tags, values, strict=True) for pair in ((f"={value[0]}", f"V{len(tag)}"), value)
     ]
     form = np.dtype(kinds)
     for rows in one.chunks():
-        states = one.states[rows]
+        states = one.log.places[rows]
         encoded = np.empty(len(states), form)
         for tag, (name, _) in zip(tags, values, strict=True):
             encoded[f"={name}"] = np.void(tag)
         encoded["state"] = states
-        for name, _, column in columns:
-            encoded[name] = column[rows]
+        for column in columns:
+            encoded[column.name] = column[rows]
         times = whole_us(one.log.time[rows]) * 1000
         yield from zip(times.tolist(), encoded.view(f"V{form.itemsize}").tolist(), strict=True)
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable
 from pathlib import Path
 from typing import IO
 
@@ -14,23 +14,23 @@ from greywhale.files.exchange.recording import ExportOptions, Recording
 from greywhale.files.log.layout import STATES
 
 
-def write(recordings: Sequence[Recording], out: Path, options: ExportOptions) -> list[Path]:
+def write(recordings: Iterable[Recording], out: Path, options: ExportOptions) -> list[Path]:
     """Write one recording with the log's own names of columns."""
     (one,) = recordings
     arrow = import_extra("--to parquet", "parquet", "pyarrow")
     parquet = import_extra("--to parquet", "parquet", "pyarrow.parquet")
     words = arrow.array(STATES)
-    columns = [("time_s", "s", one.log.time), *one.columns]
-    fields = [arrow.field(name, arrow.float64(), False, {"unit": unit}) for name, unit, _ in columns]
+    named = [("time_s", "s"), *((column.name, column.unit) for column in one.columns)]
+    fields = [arrow.field(name, arrow.float64(), False, {"unit": unit}) for name, unit in named]
     fields.append(arrow.field("state", arrow.dictionary(arrow.int8(), arrow.string()), False))
     schema = arrow.schema(fields, one.log.facts)
 
     def fill(file: IO[bytes]) -> None:
         with parquet.ParquetWriter(file, schema, use_dictionary=["state"]) as writer:
             for rows in one.chunks():
-                numbers = [arrow.array(np.ascontiguousarray(column[rows])) for _, _, column in columns]
-                states = arrow.DictionaryArray.from_arrays(arrow.array(one.states[rows]), words)
-                writer.write_batch(arrow.record_batch([*numbers, states], schema))
+                numbers = [one.log.time[rows], *(np.ascontiguousarray(column[rows]) for column in one.columns)]
+                states = arrow.DictionaryArray.from_arrays(arrow.array(one.log.places[rows]), words)
+                writer.write_batch(arrow.record_batch([*map(arrow.array, numbers), states], schema))
 
     write_whole(out, fill)
     return [out]

@@ -4,13 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import cached_property
-
-import numpy as np
-from numpy.typing import NDArray
+from typing import Any
 
 from greywhale.base.types import Floats
-from greywhale.files.log.layout import STATES
+from greywhale.files.log.held import Numbers
+from greywhale.files.log.layout import MOST
 from greywhale.files.log.reader import Log
 
 # Rows that are converted at once: an hour at 1 kHz must not stand in memory twice.
@@ -23,7 +21,21 @@ class JointColumns:
 
     name: str
     unit: str
-    values: Floats
+    values: Numbers
+
+
+@dataclass(frozen=True)
+class Column:
+    """A joint's numbers of one quantity under a log's name of them; index it by rows."""
+
+    name: str
+    unit: str
+    values: Numbers
+    joint: int
+
+    def __getitem__(self, rows: Any) -> Floats:
+        numbers: Floats = self.values[rows, self.joint]
+        return numbers
 
 
 @dataclass(frozen=True)
@@ -38,34 +50,21 @@ class Recording:
     @property
     def quantities(self) -> tuple[JointColumns, ...]:
         """All quantities of the joints, those of the log first."""
-        log = self.log
-        own = (("leader", "rad", log.leader), ("follower", "rad", log.follower), ("voltage", "V", log.voltage))
-        return (*(JointColumns(*one) for one in own), *self.extra)
+        own = (JointColumns(name, unit, self.log.held(name)) for name, (_, unit) in MOST.items())
+        return (*own, *self.extra)
 
     @property
-    def columns(self) -> tuple[tuple[str, str, Floats], ...]:
-        """A column for each joint of each quantity, under the names of a log: name, unit and values (rows,)."""
+    def columns(self) -> tuple[Column, ...]:
+        """A column for each joint of each quantity."""
         return tuple(
-            (f"{one.name}_{joint}", one.unit, column)
+            Column(f"{one.name}_{joint}", one.unit, one.values, joint)
             for one in self.quantities
-            for joint, column in enumerate(one.values.T)
+            for joint in range(one.values.shape[1])
         )
 
     @property
     def units(self) -> dict[str, str]:
         return {"time_s": "s"} | {one.name: one.unit for one in self.quantities}
-
-    @cached_property
-    def states(self) -> NDArray[np.int8]:
-        """The state of each row as its place in `STATES`."""
-        words = self.log.state
-        if words.size and words.strides == (0,):  # one word for all rows
-            return np.full(words.size, STATES.index(str(words[0])), dtype=np.int8)
-        places = np.zeros(words.size, dtype=np.int8)
-        for rows in self.chunks():
-            for place, word in enumerate(STATES):
-                places[rows][words[rows] == word] = place
-        return places
 
     def chunks(self) -> Iterator[slice]:
         """The rows, in parts that are small in memory."""

@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from greywhale.base.types import Floats
+from greywhale.files.log.layout import STATES
 from greywhale.files.log.reader import Log
+from greywhale.protocol.firmware import JOINTS
 
 # A voltage that changes by less than this (V) moves no motor: it is less than a step of the PWM.
 LEAST_V = 0.04
@@ -23,17 +24,18 @@ _REMEDIES = {
 
 def following_rows(log: Log) -> NDArray[np.bool_]:
     """The rows (rows,) in which the motors followed; all of a log that has none, such as one of another tool."""
-    following: NDArray[np.bool_] = log.state == "following"
+    following = log.following
     return following if following.any() else np.ones(len(log.time), dtype=bool)
 
 
 def driven_rows(log: Log) -> NDArray[np.bool_]:
     """The following rows; in a log that has none, the rows near a voltage, since the motors were off elsewhere."""
     some = np.zeros(len(log.time), dtype=bool)
-    for volts in log.voltage.T:  # one after another: all at once a log of an hour would be there twice
-        some |= np.abs(volts) >= LEAST_V
+    volts = log.held("voltage")
+    for joint in range(JOINTS):  # one after another: a log of an hour is large
+        some |= np.abs(volts[:, joint]) >= LEAST_V
     powered = np.flatnonzero(some)
-    if not powered.size or (log.state == "following").any():
+    if not powered.size or log.following.any():
         return following_rows(log)
     after = np.searchsorted(powered, np.arange(len(log.time)))
     times = log.time[powered]
@@ -42,10 +44,16 @@ def driven_rows(log: Log) -> NDArray[np.bool_]:
     return ((late >= 0.0) & (late <= _OFF_S)) | ((early >= 0.0) & (early <= _OFF_S))
 
 
+def as_slice(rows: NDArray[np.bool_]) -> slice | NDArray[np.bool_]:
+    """Rows that are one stretch as a slice, which copies nothing of a long log."""
+    begin, end = int(rows.argmax()), len(rows) - int(rows[::-1].argmax())
+    return slice(begin, end) if rows[begin:end].all() else rows
+
+
 def undriven(log: Log, rows: NDArray[np.bool_]) -> tuple[int, ...]:
     """The joints in use whose voltage is the same in all these rows."""
     some = rows.any()
-    return tuple(joint for joint in log.joints_in_use if not some or _range(log.voltage, rows, joint) < LEAST_V)
+    return tuple(joint for joint in log.joints_in_use if not some or _range(log, "voltage", rows, joint) < LEAST_V)
 
 
 def tell_off(log: Log) -> str:
@@ -55,7 +63,7 @@ def tell_off(log: Log) -> str:
     rows = driven_rows(log)
     if undriven(log, rows) != log.joints_in_use:
         return ""
-    states = list(dict.fromkeys(log.state[rows].tolist()))
+    states = [STATES[place] for place in dict.fromkeys(log.places[rows].tolist())]
     volts = _volts(log, rows, log.joints_in_use[0])
     off = "following" not in states and volts == "0 V"
     cause = "the motors were off" if off else "no motor's voltage changes"
@@ -70,7 +78,7 @@ def tell_undriven(log: Log, rows: NDArray[np.bool_]) -> dict[int, str]:
     """A clause for each single joint that moved or was led in these rows without a voltage."""
     clauses = {}
     for joint in undriven(log, rows):
-        led, moved = (_range(angles, rows, joint) for angles in (log.leader, log.follower))
+        led, moved = (_range(log, name, rows, joint) for name in ("leader", "follower"))
         if max(led, moved) > MOTION_RAD:
             clauses[joint] = (
                 f"joint {joint} had {_volts(log, rows, joint)} in every row, while its leader moved by {led:.2g} rad "
@@ -86,8 +94,9 @@ def tell_powerless(log: Log) -> list[str]:
 
 
 def _volts(log: Log, rows: NDArray[np.bool_], joint: int) -> str:
-    return f"{round(float(np.median(log.voltage[rows, joint])), 2) + 0.0:g} V"
+    volts = log.held("voltage")[rows, joint]
+    return f"{round(float(np.median(volts)), 2) + 0.0:g} V"
 
 
-def _range(angles: Floats, rows: NDArray[np.bool_], joint: int) -> float:
-    return float(np.ptp(angles[rows, joint]))
+def _range(log: Log, quantity: str, rows: NDArray[np.bool_], joint: int) -> float:
+    return float(np.ptp(log.held(quantity)[rows, joint]))

@@ -8,6 +8,7 @@ import io
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,7 +19,19 @@ from greywhale.files.log.check import KEY as CHECK
 from greywhale.files.log.check import Check, add_rows, facts_of
 from greywhale.files.log.condition import Condition, judge_condition
 from greywhale.files.log.episodes import task_in
-from greywhale.files.log.layout import COLUMNS, COMPLETE, ENDINGS, INTERRUPTED, MOST, STATES, TITLE, UNFINISHED, Origin
+from greywhale.files.log.held import Numbers, Quantity, Room, State, held, part_of
+from greywhale.files.log.layout import (
+    COLUMNS,
+    COMPLETE,
+    ENDINGS,
+    INTERRUPTED,
+    MOST,
+    QUANTITIES,
+    STATES,
+    TITLE,
+    UNFINISHED,
+    Origin,
+)
 from greywhale.files.log.parameters import table_in
 from greywhale.files.log.units import doubt_angles, perhaps_degrees, refuse_other_spacing
 from greywhale.protocol.firmware import JOINTS
@@ -26,7 +39,7 @@ from greywhale.protocol.joints import ALL, Joints, parse
 from greywhale.protocol.table import ParameterTable
 
 _LARGEST_WHOLE_NUMBER = (1 << 63) - 1  # in a header
-_FOLLOWING = STATES.index("following")
+FOLLOWING = STATES.index("following")
 # More changes of a voltage than these, and in all so many, are no chance.
 _MOST_CHANGES_PER_PERIOD, _ENOUGH_CHANGES = 1.2, 100
 # Where each quantity stands in a row of numbers, behind the time.
@@ -39,17 +52,20 @@ _ROW = np.dtype([("numbers", np.float64, (len(COLUMNS) - 1,)), ("state", f"S{max
 
 @dataclass(frozen=True)
 class Log:
-    """One recording: s, rad and V, one row a sample and one column a joint; `state` holds a word for every row."""
+    """One recording: s, rad and V, one row a sample and one column a joint; `state` holds a word for every row.
+
+    Of a log that was read a quantity is made when it is asked for. For a long one ask `held` for some rows or a joint.
+    """
 
     name: str
     origin: Origin
     time: NDArray[np.float64]
-    leader: NDArray[np.float64]
-    follower: NDArray[np.float64]
-    voltage: NDArray[np.float64]
-    state: NDArray[np.str_]
-    dropped: int
-    complete: bool
+    leader: Quantity = Quantity()  # noqa: RUF009 (of a descriptor, no default)
+    follower: Quantity = Quantity()  # noqa: RUF009
+    voltage: Quantity = Quantity()  # noqa: RUF009
+    state: State = State()  # noqa: RUF009
+    dropped: int = 0
+    complete: bool = True
     ended_by: str = ""
     condition: Condition = field(default_factory=Condition)  # of the whole file, whatever was selected from it
 
@@ -76,8 +92,28 @@ class Log:
 
     def without_samples(self) -> Log:
         """The log without its samples, which take most of the memory."""
-        none = np.empty((0, JOINTS))
-        return replace(self, time=np.empty(0), leader=none, follower=none, voltage=none, state=self.state[:0].copy())
+        return self.part(np.empty(0, dtype=np.intp))
+
+    def held(self, quantity: str) -> Numbers:
+        """The quantity's numbers (rows, joints), of which only those are made that are indexed."""
+        return held(self, quantity)
+
+    @property
+    def places(self) -> NDArray[np.int8]:
+        """The state of each row as its place in STATES."""
+        places: NDArray[np.int8] = vars(self)["state"]
+        return places
+
+    @property
+    def following(self) -> NDArray[np.bool_]:
+        """True in the rows (rows,) in state following."""
+        following: NDArray[np.bool_] = self.places == FOLLOWING
+        return following
+
+    def part(self, rows: slice | NDArray[np.intp] | NDArray[np.bool_]) -> Log:
+        """The log of these rows alone."""
+        quantities: dict[str, Any] = {name: part_of(self.held(name), rows) for name in QUANTITIES}
+        return replace(self, time=self.time[rows], state=self.places[rows], **quantities)
 
 
 def read_log(path: str | Path) -> Log:
@@ -101,16 +137,16 @@ def read_log(path: str | Path) -> Log:
     refuse_other_times(str(path), facts, columns.time[: columns.rows])
     condition = judge_condition(str(path), facts, crc, columns.time[: columns.rows])
     if origin.table is None:
-        odd = doubt_angles(columns.leader[: columns.rows], columns.follower[: columns.rows])
+        odd = doubt_angles(columns.taken("leader"), columns.taken("follower"))
         condition = replace(condition, remarks=condition.remarks + odd)
     return Log(
         name=str(path),
         origin=origin,
         time=columns.time[: columns.rows],
-        leader=columns.leader[: columns.rows],
-        follower=columns.follower[: columns.rows],
-        voltage=columns.voltage[: columns.rows],
-        state=_words(columns.state[: columns.rows]),
+        leader=columns.taken("leader"),
+        follower=columns.taken("follower"),
+        voltage=columns.taken("voltage"),
+        state=columns.state[: columns.rows],
         dropped=dropped,
         complete=ending == COMPLETE,
         ended_by=facts.get("ended_by", ""),
@@ -142,8 +178,7 @@ class _Columns:
     def __init__(self, room: int) -> None:
         self.rows = 0
         self.time = np.empty(room)
-        self.leader, self.follower = np.empty((room, JOINTS)), np.empty((room, JOINTS))
-        self.voltage = np.empty((room, JOINTS))
+        self._quantities = {name: Room(room, JOINTS) for name in _PLACES}
         self.state = np.empty(room, dtype=np.int8)
         self.changes = 0  # rows with another voltage than the row before, while the motors follow
         self._last = np.full((1, JOINTS), np.nan)
@@ -157,14 +192,16 @@ class _Columns:
         numbers, states = parsed
         here = slice(self.rows, self.rows + len(numbers))
         self.time[here] = numbers[:, 0]
-        self.leader[here] = numbers[:, _PLACES["leader"]]
-        self.follower[here] = numbers[:, _PLACES["follower"]]
-        self.voltage[here] = numbers[:, _PLACES["voltage"]]
+        for name, places in _PLACES.items():
+            self._quantities[name].put(here, numbers[:, places])
         self.state[here] = states
         before_each = np.vstack([self._last, numbers[:, _PLACES["voltage"]]])
-        self.changes += int(((np.diff(before_each, axis=0) != 0.0).any(axis=1) & (states == _FOLLOWING)).sum())
+        self.changes += int(((np.diff(before_each, axis=0) != 0.0).any(axis=1) & (states == FOLLOWING)).sum())
         self._last = before_each[-1:]
         self.rows = here.stop
+
+    def taken(self, quantity: str) -> Numbers:
+        return self._quantities[quantity].taken(self.rows)
 
 
 def parse_rows(data: bytes) -> tuple[NDArray[np.float64], NDArray[np.int8]] | None:
@@ -214,14 +251,6 @@ def _cell_by_cell(table: csv_file.CsvTable, before_s: float) -> tuple[NDArray[np
     quantities = [_joints(table, quantity) for quantity in _PLACES]
     states = np.array([STATES.index(cell) for cell in table.columns["state"]], dtype=np.int8)
     return np.column_stack([time, *quantities]), states
-
-
-def _words(places: NDArray[np.int8]) -> NDArray[np.str_]:
-    """The states as words. A recording has mostly one, which is kept once."""
-    words = np.array(STATES)
-    if places.size and (places == places[0]).all():
-        return np.broadcast_to(words[places[0]], places.shape)
-    return words[places]
 
 
 def _count_lines(path: str | Path) -> int:

@@ -8,8 +8,6 @@ of the logarithms of all that is shown. So what is rare counts, and no joint and
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 
 from greywhale.base.types import Floats
@@ -36,17 +34,10 @@ def informative(log: Log, most_s: float = MOST_USED_S) -> Log:
     count = round(most_s / _PIECE_S)
     if len(pieces) <= count:
         return log
-    usual = log.follower[:: max(1, len(log.time) // 10_000)].mean(axis=0)
+    usual = log.held("follower")[:: max(1, len(log.time) // 10_000)].mean(axis=0)
     chosen = _choose(np.array([_shown(log, piece, usual) for piece in pieces]), count)
     rows = np.concatenate([np.arange(pieces[one].start, pieces[one].stop) for one in sorted(chosen)])
-    return replace(
-        log,
-        time=log.time[rows],
-        leader=log.leader[rows],
-        follower=log.follower[rows],
-        voltage=log.voltage[rows],
-        state=log.state[rows],
-    )
+    return log.part(rows)
 
 
 def _pieces(log: Log) -> list[slice]:
@@ -69,7 +60,7 @@ def _shown(log: Log, piece: slice, usual: Floats) -> Floats:
     time = log.time[piece]
     period = float(time[-1] - time[0]) / (len(time) - 1)
     size = max(1, round(_STEP_S / period))
-    angle, volts = _averaged(log.follower[piece], size), _averaged(log.voltage[piece], size)
+    angle, volts = (_averaged(log.held(name)[piece], size) for name in ("follower", "voltage"))
     speed = np.diff(angle, axis=0) / (size * period)
     bend = np.diff(speed, axis=0) / (size * period)
     held = (np.abs(speed) < _STILL_RAD_S) & (np.abs(volts[1:]) > _PUSHED_V)

@@ -6,6 +6,7 @@ import numpy as np
 
 from greywhale.base.errors import UserError
 from greywhale.base.types import Floats
+from greywhale.files.log.held import Numbers
 from greywhale.protocol.firmware import TICK_S
 
 # So many times as large as in s is a time in another unit.
@@ -63,7 +64,7 @@ def doubt_speed(time_s: Floats, angles: Floats) -> tuple[str, ...]:
     return (f"it takes {time_s[-1] - time_s[0]:.4g} s and never exceeds {fastest:.2g} rad/s; is time_s in ms?",)
 
 
-def doubt_angles(*angles: Floats) -> tuple[str, ...]:
+def doubt_angles(*angles: Numbers) -> tuple[str, ...]:
     """Doubts about a log that does not say how its potentiometers are scaled, (rows, joints) rad each."""
     largest = max(float(max(one.max(), -one.min())) for one in angles)
     if largest <= _HALF_TURN_RAD:
