@@ -212,6 +212,34 @@ def test_the_self_test_finds_a_wrong_number(tmp_path: Path) -> None:
     assert subprocess.run([str(tmp_path / "t")], check=False).returncode > 0
 
 
+MIDDLE = "{{-16384, 0, 262140u, 32768u}, {16384, 0, 262140u, 32768u}}"  # the set of table3 between the two others
+CUT = "{{-16384, 0, 262140u, 32768u}, {0, 0, 0u, 0u}}"  # it ends at 0
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("edits", "said"),
+    [
+        ({}, ""),
+        ({MIDDLE: CUT}, ""),  # the set behind it has a height from 1 on
+        ({MIDDLE: CUT, "{{0, 16384, 262140u, 32768u}": "{{1, 16384, 262140u, 32768u}"}, "the rules have a hole"),
+        ({"{0, 1, 2},\n": "{0, 1, no_rule},\n"}, "the rules have a hole"),
+        ({"{1, 2, 2},\n": "{1, 2, 3},\n"}, "rules: every cell is the number of a set of the output, or no_rule"),
+        ({MIDDLE: MIDDLE.replace("{16384", "{-9")}, "e_sets: the edges of every set rise"),
+    ],
+)
+def test_a_header_that_was_broken_by_hand_does_not_compile(tmp_path: Path, edits: dict[str, str], said: str) -> None:
+    text = header_of("table3").text
+    for old, new in edits.items():
+        assert old in text
+        text = text.replace(old, new, 1)
+    (tmp_path / "edited.h").write_text(text)
+    command = ["c++", "-std=c++11", "-fsyntax-only", "-x", "c++", str(tmp_path / "edited.h")]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert (done.returncode != 0) == bool(said)
+    assert said in done.stderr
+
+
 def test_a_hole_is_found_where_it_is() -> None:
     text = table(3).replace("'trimf',[-3 0 3]", "'trimf',[-0.5 0 0.5]").replace("[-6 -3 0]", "[-6 -3 -1]")
     law = from_fis(fis.parse(text), "hole.fis")
