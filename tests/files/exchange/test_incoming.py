@@ -74,20 +74,24 @@ def test_a_joint_that_bam_has_comes_back_with_its_numbers(path: Path) -> None:
     assert (new.state == "following").tolist() == np.isin(log.state, ["soft_start", "following"]).tolist()
 
 
-def test_bams_own_recording(path: Path) -> None:
-    """As its record.py writes one of a Dynamixel: a load in thousandths of the supply that it reads beside it, below 0
-    as 16 bits without a sign.
+@pytest.mark.parametrize(("motor", "full"), [("mx64", 1000), ("xl330", 885), ("xl330", 1)])
+def test_bams_own_recording(path: Path, motor: str, full: int) -> None:
+    """As its record.py writes one of a Dynamixel: a share of the supply that it reads beside it, in thousandths; of an
+    XL330 in 1/885, as its register has it, or as it is. Below 0 it may be 16 bits without a sign.
     """
+    loads = [-0.02 * full * row for row in range(5)]
+    if full > 1:
+        loads = [round(load) % 65536 for load in loads]
     entries = [
-        {"position": 0.1 * row, "speed": 0.0, "load": -20 * row % 65536, "input_volts": 7.3, "temp": 28}
+        {"position": 0.1 * row, "speed": 0.0, "load": loads[row], "input_volts": 7.3, "temp": 28}
         | {"timestamp": 0.0035 + 0.0052 * row, "goal_position": 0.2, "torque_enable": row < 3}
         for row in range(5)
     ]
-    head = {"mass": 0.49, "length": 0.1, "kp": 100, "vin": 7.4, "motor": "xl330", "trajectory": "sin_sin"}
+    head = {"mass": 0.49, "length": 0.1, "kp": 100, "vin": 7.4, "motor": motor, "trajectory": "sin_sin"}
     path.with_suffix(".json").write_text(json.dumps(head | {"entries": entries}))
     assert bring(path.with_suffix(".json"), "bam", joint=1) == Imported(5, (1,), ())
     log = read_log(path.with_name("new.csv"))
-    np.testing.assert_allclose(log.voltage[:, 1], -0.146 * np.arange(5), atol=5e-4)
+    np.testing.assert_allclose(log.voltage[:, 1], -0.146 * np.arange(5), atol=7.3 / 885 / 2 + 5e-4)
     np.testing.assert_allclose(log.time, 0.0035 + 0.0052 * np.arange(5), atol=5e-7)
     np.testing.assert_allclose(log.follower[:, 1], 0.1 * np.arange(5))
     assert log.state.tolist() == ["following"] * 3 + ["disabled"] * 2

@@ -1,7 +1,8 @@
 """One joint of a log as a recording of Rhoban's BAM (better actuator models): JSON with an entry for each sample.
 
 https://github.com/Rhoban/bam, bam/dynamixel/record.py. There `load` is the motor's duty in thousandths, with its sign,
-of `input_volts`, the supply. What this arm does not have is left out (`temp`) or null (`kp`: the law is no gain).
+of `input_volts`, the supply; of an XL330 it is the register Present PWM, or in newer recordings the duty itself. What
+this arm does not have is left out (`temp`) or null (`kp`: the law is no gain).
 """
 
 from __future__ import annotations
@@ -15,13 +16,22 @@ import numpy as np
 
 from greywhale.base.errors import BadUsage, UserError
 from greywhale.base.formats.whole import write_whole
+from greywhale.base.types import Floats
 from greywhale.files.exchange.recording import ExportOptions, Recording
 from greywhale.files.log.layout import QUANTITIES, STATES
 
 FULL_LOAD = 1000.0  # of the load where the duty is 1
+FULL_PWM = 885.0  # the same of an XL330's register
 # Of ours, which BAM passes over: the board's clock at timestamp 0 in s, and the joint.
 START, JOINT = "start_s", "joint"
 POWERED = ("soft_start", "following")
+
+
+def full_load(motor: object, load: Floats) -> float:
+    """The load where the duty of this motor is 1."""
+    if not str(motor).startswith("xl330"):
+        return FULL_LOAD
+    return FULL_PWM if np.abs(load).max() > 1.0 else 1.0
 
 
 def write(recordings: Iterable[Recording], out: Path, options: ExportOptions) -> list[Path]:

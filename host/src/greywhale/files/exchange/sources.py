@@ -72,7 +72,8 @@ def _read_bam(path: Path, joint: int | None) -> Source:
     keys = [key for key in entries[0] if all(isinstance(entry.get(key), int | float) for entry in entries)]
     columns: Columns = {key: np.array([entry[key] for entry in entries], dtype=np.float64) for key in keys}
     if {"load", "input_volts"} <= columns.keys():
-        columns["volts"] = _signed(columns["load"]) / bam.FULL_LOAD * columns["input_volts"]
+        load = _signed(columns["load"])
+        columns["volts"] = load / bam.full_load(data.get("motor"), load) * columns["input_volts"]
     if "torque_enable" in columns:
         columns["powered"] = np.where(columns["torque_enable"] > 0.0, "following", "disabled")
     place = joint if joint is not None else int(data.get(bam.JOINT, 0))
