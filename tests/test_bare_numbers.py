@@ -30,11 +30,10 @@ ALLOWED = {
     "commission/measures.py": {"LATEST_BEGIN_S": "how far the beginning of the check is looked for in its log"},
     "commission/motions.py": {"REACHES_SEED": SEED},
     "commission/request.py": {"ROUNDS": ASKED, "TRIALS": ASKED},
-    "commission/run.py": {"DESIGN_BUDGET": COUNTS},
     "commission/search.py": {"LEAST_RAD2": ROUNDING},
     "identify/bootstrap.py": {"LOGS": COUNTS, "STEPS": COUNTS, "MOMENTS": BOARD},
     "identify/closed_loop.py": {
-        **dict.fromkeys(("LEAD_TICKS", "COMPARED_TICKS", "STEPS_PER_TICK", "BENCH_STEPS"), FINE),
+        **dict.fromkeys(("COMPARED_TICKS", "STEPS_PER_TICK", "BENCH_STEPS"), FINE),
         "SEED": SEED,
     },
     "identify/data.py": {
@@ -42,7 +41,10 @@ ALLOWED = {
         **dict.fromkeys(("STEP_S", "FINE_STEP_S"), FINE),
     },
     "identify/default.py": {"DRAWS": COUNTS},
-    "identify/excite/design.py": {"BUDGET": ASKED, "MOST_BUDGET": ASKED, "SECONDS": ASKED, "SHRINKS": COUNTS},
+    "identify/excite/design.py": {
+        **dict.fromkeys(("BUDGET", "MOST_BUDGET", "SECONDS"), ASKED),
+        **dict.fromkeys(("GOOD_BUDGET", "SHRINKS"), COUNTS),
+    },
     "identify/excite/information.py": {"_STEP": FINE},
     "identify/excite/limits.py": {"FARTHEST_RAD": ASKED, "FAMILY": COUNTS},
     "identify/excite/multisine.py": {"SINES": DRAWN, "SHORTEST_S": ASKED, "LONGEST_S": ASKED},
@@ -72,7 +74,7 @@ ALLOWED = {
     },
     "tune/judge/choose.py": {"ROUNDS": COUNTS},
     "tune/judge/held_out.py": {"WAIT_S": DRAWN, "SEED": SEED, "EVERY": DRAWN},
-    "tune/judge/margins.py": {"WAIT_S": DRAWN, "_MOVING_SEED": SEED},
+    "tune/judge/margins.py": {"_MOVING_SEED": SEED},
     "tune/model.py": {"SAMPLES": ASKED, "MOST_SAMPLES": ASKED},
     "tune/model_checks.py": {
         "SPREAD_SAMPLES": COUNTS,
@@ -84,7 +86,6 @@ ALLOWED = {
         "CONVERTER_SPAN": "of the board's converter",
     },
     "tune/paper.py": dict.fromkeys(("AGENTS", "ITERATIONS", "PERIOD_MS", "LARGEST_SUPPLY_V", "WAIT_S"), PAPER),
-    "tune/possible.py": {"CONVERSIONS_S": "when a board converts"},
     "tune/report/controller_file.py": {"DIGITS": "how a file writes a number"},
     "tune/report/tables.py": dict.fromkeys(
         ("PAPER_STEP_MSE", "PAPER_STEADY_STATE", "PAPER_DELAY", "PAPER_MULTI_STEP_MSE"), PAPER

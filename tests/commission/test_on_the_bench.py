@@ -131,7 +131,7 @@ def send_at(motion_file: str, number: int, patch: pytest.MonkeyPatch) -> None:
         return record.record_led(device, path, motion, progress=told, **options)
 
     patch.setattr(arm_on_port, "record_led", record_led)
-    patch.setattr(commissioning, "DESIGN_BUDGET", 1)
+    patch.setattr(commissioning, "GOOD_BUDGET", 1)
 
 
 def commission_killed(port: str, folder: Path) -> None:

@@ -205,7 +205,7 @@ def test_without_a_model_the_arm_is_excited_and_identified(
 
     monkeypatch.setattr(learn, "identify", identify)
     monkeypatch.setattr(learn, "validated", lambda found, logs, tables: note("validate", logs, tables))
-    monkeypatch.setattr(run, "DESIGN_BUDGET", 2)
+    monkeypatch.setattr(run, "GOOD_BUDGET", 2)
     outcome = commission(options(model=None, rounds=2, trials=2, judging=ending(max_error_share=0.0)))
     assert begun == [None, outcome.rounds[0].learnt.arm], "the second model goes on from the first"
     played = [one.name for one in outcome.rounds[0].trials if not one.stopped]

@@ -35,7 +35,7 @@ def test_the_demo_tells_its_story_and_proves_its_controllers_on_the_arm(
     shorten(monkeypatch)
     judge_nothing(monkeypatch)
     few_plants(monkeypatch)
-    monkeypatch.setattr(practice, "DESIGN_BUDGET", 30)
+    monkeypatch.setattr(practice, "GOOD_BUDGET", 30)
     monkeypatch.setattr(story, "PROVING_TRIALS", 1)
     short = MotionLimits(
         reaches_s=2.0, hold_s=0.5, slow_s=1.0, pause_s=0.3, move_shares=(0.5,), rest_s=0.5,

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 
-from greywhale.protocol.frames import CRC_START
+from greywhale.protocol.declared import CRC_START
 from greywhale.protocol.schema import DEFAULTS, pack_parameters
 from tools import ROOT
 from tools.gates import apply, size, stack, tick

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from greywhale.arm import ArmParameters
-from greywhale.arm.summary import PITCH_JOINTS
+from greywhale.arm.parameters import PITCH_JOINTS
 from greywhale.identify.data import prepare
 from greywhale.identify.limits import IDENTIFICATION_LIMITS
 from greywhale.identify.space import MOTOR, Space

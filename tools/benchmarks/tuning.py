@@ -11,11 +11,12 @@ import numpy as np
 
 from greywhale.arm import ArmParameters
 from greywhale.base.types import Floats
-from greywhale.cli.story.practice import CHECK_SHARE, DESIGN_BUDGET, PRACTICE_S, START_POSE_RAD, tables
+from greywhale.cli.story.practice import CHECK_SHARE, PRACTICE_S, START_POSE_RAD, tables
 from greywhale.files.arm import load_arm
 from greywhale.files.log import Log
 from greywhale.files.trajectory import Trajectory
 from greywhale.identify.excite import design
+from greywhale.identify.excite.design import GOOD_BUDGET
 from greywhale.loop import human_reaches, multi_steps, steps
 from greywhale.measure import Evaluation
 from greywhale.protocol.table import ParameterTable
@@ -53,7 +54,7 @@ def practised(arm: ArmParameters, folder: Path, seed: int) -> list[Log]:
 @cache
 def excitation() -> Trajectory:
     """The motion that shows most about an arm of which only the white box is known."""
-    return design(load_arm("white_box"), START_POSE_RAD, seconds=PRACTICE_S, budget=DESIGN_BUDGET).motion
+    return design(load_arm("white_box"), START_POSE_RAD, seconds=PRACTICE_S, budget=GOOD_BUDGET).motion
 
 
 @dataclass(frozen=True)

@@ -17,6 +17,7 @@ USUAL_TRACK_RAD = math.radians(300.0)
 USUAL_NOISE_V = 0.0024
 MOST_NOISE_V = 0.5  # rms: a tenth of the range, of which no angle could be read
 JOINT_NAMES = ("base yaw", "shoulder pitch", "wrist pitch", "wrist roll")
+PITCH_JOINTS = (1, 2)  # only these feel gravity
 PAPER_IYY0 = 8.26e-3  # as printed in the paper's Table 3
 
 # Ranges that every arm keeps by far, from a wristwatch's gears to the largest industrial robots: what lies beyond is a

@@ -8,10 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from greywhale.arm.body import Body
-from greywhale.arm.parameters import JOINT_NAMES, ArmParameters
+from greywhale.arm.parameters import JOINT_NAMES, PITCH_JOINTS, ArmParameters
 from greywhale.arm.plants import plant_row
 
-PITCH_JOINTS = (1, 2)  # only these feel gravity
 MUCH_GRAVITY_SHARE = 0.5  # of the stall torque: what is left moves a joint slowly
 
 

@@ -10,7 +10,6 @@ import numpy as np
 
 from greywhale.arm.from_urdf import Imported, import_urdf
 from greywhale.arm.parameters import JOINT_NAMES
-from greywhale.base.errors import require_between
 from greywhale.base.formats.whole import refuse_inputs, write_text
 from greywhale.base.telling import Sentences, Telling
 from greywhale.base.types import PerJoint
@@ -18,7 +17,7 @@ from greywhale.cli.arm_match import match
 from greywhale.cli.arm_new import new
 from greywhale.cli.arm_table import Lifting, lifting, notes, table
 from greywhale.cli.group import Group
-from greywhale.cli.output import FILE, SUPPLY_V, json_option, option, overwrite_option, show
+from greywhale.cli.output import FILE, json_option, option, overwrite_option, require_supply, show
 from greywhale.files.model import arm_toml
 from greywhale.files.outputs import require_new
 
@@ -53,7 +52,7 @@ def import_(urdf: Path, out: Path, supply: float, overwrite: bool, as_json: bool
     it is. A URDF says nothing about gears, and its motors only by their effort and velocity limits, where 0 asks for a
     guess: `greywhale identify` finds what they really are.
     """
-    require_between("--supply", supply, "V", SUPPLY_V)
+    require_supply(supply)
     refuse_inputs(out, urdf)
     require_new(overwrite, out)
     found = import_urdf(urdf, supply)

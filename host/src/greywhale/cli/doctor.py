@@ -10,7 +10,7 @@ from greywhale.base.errors import BadUsage, counted, require_between
 from greywhale.base.telling import Column, Row, Sentences, Step, Table, Telling
 from greywhale.board.doctor import Finding, Verdict, examine, worst
 from greywhale.board.doctor.examine import LINK_S
-from greywhale.cli.output import FILE, SUPPLY_V, OnPort, json_option, option, port_option, progress, show
+from greywhale.cli.output import FILE, OnPort, json_option, option, port_option, progress, require_supply, show
 from greywhale.protocol.ports import choose_port
 
 LONGEST_S = 3600.0  # of the look at the link
@@ -49,7 +49,7 @@ def command(
     """
     require_between("--seconds", seconds, "", (0.5, LONGEST_S))
     if supply is not None:
-        require_between("--supply", supply, "V", SUPPLY_V)
+        require_supply(supply)
     if hex_file is not None and not image:
         raise BadUsage("--hex belongs to --image; add that, or leave it out.")
     chosen = choose_port(port)

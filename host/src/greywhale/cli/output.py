@@ -14,7 +14,7 @@ from typing import Any, Protocol, TypedDict, TypeVar
 
 import click
 
-from greywhale.base.errors import MOST_WORKERS, printable
+from greywhale.base.errors import MOST_WORKERS, printable, require_between
 from greywhale.base.telling import Step, Telling, told
 from greywhale.base.types import NotedProgress, show_no_progress
 from greywhale.cli import completion, tracing
@@ -54,9 +54,6 @@ class OnPort(TypedDict):
     port: str  # the serial port that was used
 
 
-SUPPLY_V = (1.0, 60.0)  # of motors that an Arduino drives
-
-
 def option(*names: str, **settings: Any) -> Callable[[Command], Command]:
     """click's option, whose help says the default."""
     return click.option(*names, show_default="default" in settings, **settings)
@@ -70,6 +67,11 @@ def json_option(answer: object) -> Callable[[Command], Command]:
         return click.option("--json", "as_json", is_flag=True, help="Print exactly one JSON object on stdout.")(command)
 
     return add
+
+
+def require_supply(volts: float) -> None:
+    """Refuse a supply that no motor has that an Arduino drives."""
+    require_between("--supply", volts, "V", (1.0, 60.0))
 
 
 def workers_options(*names: str) -> Callable[[Command], Command]:

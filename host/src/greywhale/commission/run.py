@@ -37,6 +37,7 @@ from greywhale.files.log import read_evidence
 from greywhale.files.parameter_file import load as load_parameters
 from greywhale.files.parameter_file import save as save_parameters
 from greywhale.identify.excite import design
+from greywhale.identify.excite.design import GOOD_BUDGET
 from greywhale.identify.excite.limits import limits_of
 from greywhale.loop.controllers import controllers_of
 from greywhale.protocol.firmware import JOINTS
@@ -45,7 +46,6 @@ from greywhale.tune.board_checks import refuse_uncalibrated
 from greywhale.tune.model_checks import doubt_other_arm
 
 EXCITING = "excite_leader.csv"
-DESIGN_BUDGET = 150  # the last evaluations of a search for a motion would gain little
 
 
 def is_enough(hoped: Sequence[float], limits: RoundLimits = COMMISSIONING_LIMITS.rounds) -> bool:
@@ -82,7 +82,7 @@ def _design(
         table=table,
         ranges=options.ranges,
         seed=options.seed,
-        budget=DESIGN_BUDGET,
+        budget=GOOD_BUDGET,
         report=report,
         judging=options.judging.tuning.identification,
     )

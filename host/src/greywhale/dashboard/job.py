@@ -27,11 +27,11 @@ from greywhale.dashboard.client import Client
 from greywhale.dashboard.lending import MOST_SAMPLES, LentEnd
 from greywhale.dashboard.outbox import Outbox
 from greywhale.dashboard.relay import Relay, Wish
+from greywhale.protocol.socket_line import PIECE_BYTES
 
 # A verb that was interrupted stops motors and writes its files; one that does not end by then hangs.
 END_WAIT_S = 15.0
 MOST_SAID_LINES = 200  # kept of a verb's output, the newest
-_PIECE_BYTES = 65536  # of a pipe, read at once
 
 
 @dataclass(frozen=True)
@@ -196,9 +196,9 @@ class Job:
             while open_pipes:
                 for key, events in selector.select(self._patience_s()):
                     if key.fd == self._wake_out.fileno():
-                        self._wake_out.recv(_PIECE_BYTES)
+                        self._wake_out.recv(PIECE_BYTES)
                     elif key.fd in open_pipes:
-                        data = os.read(key.fd, _PIECE_BYTES)
+                        data = os.read(key.fd, PIECE_BYTES)
                         if data:
                             open_pipes[key.fd](data)
                         else:

@@ -7,10 +7,10 @@ import socket
 
 from greywhale.dashboard.client import Client
 from greywhale.dashboard.relay import Relay, Wish
+from greywhale.protocol.socket_line import PIECE_BYTES
 
 # A verb may compute for a minute before it reads; it loses no sample that a port would have kept.
 MOST_SAMPLES = 60_000
-_PIECE_BYTES = 65536  # of the lent line, read at once
 
 
 class LentEnd:
@@ -37,7 +37,7 @@ class LentEnd:
         """Take what the verb sent."""
         if events & selectors.EVENT_READ:
             try:
-                data = self._connection.recv(_PIECE_BYTES)
+                data = self._connection.recv(PIECE_BYTES)
             except BlockingIOError:
                 return
             except OSError:

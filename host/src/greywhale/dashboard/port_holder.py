@@ -12,13 +12,12 @@ from greywhale.board.device import Device, FirmwareError
 from greywhale.board.refusal import upper_first
 from greywhale.board.session import Session, StopAsked
 from greywhale.dashboard.relay import Relay
+from greywhale.dashboard.silence import ASK_AGAIN_S
 from greywhale.protocol.ports import choose_port, lasting_name
 from greywhale.protocol.transport import Line, PortBusyError, PortLostError
 
-# How long until a board is looked for again, until one that does not answer is asked again (its bootloader ends only
-# if nobody speaks to it), and until one that was stopped from elsewhere is taken again.
+# How long until a board is looked for again, and until one that was stopped from elsewhere is taken again.
 LOOK_AGAIN_S = 0.5
-ASK_AGAIN_S = 6.0
 AFTER_STOP_S = 3.0
 # A board that is just being greeted keeps its port for so long.
 LET_GO_S = 10.0

@@ -17,11 +17,10 @@ from greywhale.identify.data import Prepared, at, part_of, pot_noise
 from greywhale.identify.space import Space
 from greywhale.loop.closed_loop import ClosedLoop, known_readings, shown_angles, with_ideal_follower
 from greywhale.loop.controllers import controllers_of
+from greywhale.loop.led_model import LEAD_TICKS
 from greywhale.protocol.firmware import JOINTS, TICK_S
 from greywhale.protocol.table import ParameterTable
 
-# The loop stands still at the first pose for so many ticks before the log begins, so that it starts at rest.
-LEAD_TICKS = 500
 COMPARED_TICKS = 5
 STEPS_PER_TICK = 2
 BENCH_STEPS = 4

@@ -15,9 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from greywhale.arm import ArmParameters
-from greywhale.arm.parameters import Tip
+from greywhale.arm.parameters import PITCH_JOINTS, Tip
 from greywhale.arm.plants import column, plant_row
-from greywhale.arm.summary import PITCH_JOINTS
 from greywhale.base.types import Floats
 from greywhale.protocol.firmware import JOINTS
 

@@ -16,7 +16,7 @@ from typing import ClassVar, Protocol, Self, TypeVar
 from greywhale.base import sentences
 from greywhale.base.errors import BAD_USAGE, BadUsage, UserError
 
-CRC_START = 0xFFFF
+CRC_START = 0xFFFF  # of tables and frames
 _CODES = {"u8": "B", "i8": "b", "u16": "H", "i16": "h", "u32": "I", "i32": "i"}
 
 

@@ -8,10 +8,8 @@ from __future__ import annotations
 import contextlib
 import socket
 
-from greywhale.protocol.socket_line import SocketLine
+from greywhale.protocol.socket_line import PIECE_BYTES, SocketLine
 from greywhale.protocol.transport import LENT, Line
-
-_PIECE_BYTES = 65536
 
 
 class LentLine(SocketLine):
@@ -25,7 +23,7 @@ class LentLine(SocketLine):
         super().__init__(port, connection)
         connection.setblocking(False)
         with contextlib.suppress(BlockingIOError):  # what was said before is nobody's
-            while connection.recv(_PIECE_BYTES):
+            while connection.recv(PIECE_BYTES):
                 pass
 
     def close(self) -> None:

@@ -16,7 +16,7 @@ from greywhale.protocol.transport import READ_WAIT_S, PortLostError
 
 PREFIX = "socket://"  # as pyserial has it
 _CONNECT_WAIT_S = 5.0  # a person waits; another machine of the same house answers in milliseconds
-_PIECE_BYTES = 65536
+PIECE_BYTES = 65536  # read at once
 
 
 class SocketLine:
@@ -37,7 +37,7 @@ class SocketLine:
         if not select.select([self._connection], [], [], READ_WAIT_S)[0]:
             return b""
         try:
-            data = self._connection.recv(_PIECE_BYTES)
+            data = self._connection.recv(PIECE_BYTES)
         except OSError:
             data = b""
         if not data:

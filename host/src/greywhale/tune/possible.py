@@ -15,15 +15,13 @@ import numpy as np
 from greywhale import _native
 from greywhale.base.limits import numbers_in
 from greywhale.base.types import Controllers, Floats
+from greywhale.identify.data import CONVERSION_S
 from greywhale.protocol.firmware import TICK_S
 from greywhale.protocol.table import ParameterTable
 from greywhale.tune.judge.floor import follow_ideally
 from greywhale.tune.limits import TUNING_LIMITS, TuningLimits
 from greywhale.tune.search.objective import ErrorScale, follow
 from greywhale.tune.search.training import WAIT_S, TrainingMotion
-
-# The mean age of a tick's conversions when the tick uses them.
-CONVERSIONS_S = 0.5e-3
 
 
 def scale_of(
@@ -44,7 +42,7 @@ def scale_of(
 def lateness_s(table: ParameterTable) -> float:
     """Return the delay (s) of a board behind its leader: conversions, low-pass, half a period until a duty changes."""
     low_pass = ((1 << table["filter_shift"]) - 1) * TICK_S
-    return CONVERSIONS_S + low_pass + 0.5e-3 * table.period_ms
+    return CONVERSION_S + low_pass + 0.5e-3 * table.period_ms
 
 
 def _least_errors(drill: TrainingMotion, plants: Floats, late_s: float, threads: int, judging: TuningLimits) -> Floats:

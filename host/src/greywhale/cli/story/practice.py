@@ -25,6 +25,7 @@ from greywhale.files.log import Log
 from greywhale.files.paper_tables import paper_table
 from greywhale.files.trajectory import Trajectory
 from greywhale.identify.excite import design
+from greywhale.identify.excite.design import GOOD_BUDGET
 from greywhale.loop import human_reaches
 from greywhale.protocol.table import ParameterTable
 
@@ -32,8 +33,6 @@ UNTUNED, OTHER = "before_tuning", "table_9"  # of the paper: where tuning starts
 REST_FILE = "rest_leader.csv"  # a leader that the person holds still
 PRACTICE_S = 20.0
 START_POSE_RAD = (0.0, 0.4, 0.0, 0.0)  # the arm off its lower stops, room to both sides
-# The last evaluations of a search would gain little, and here the motion only has to be a good one.
-DESIGN_BUDGET = 150
 # To validate, with the same controllers and with others: was the arm learnt, or the arm with its controllers?
 CHECKS = (("check", UNTUNED), ("check_changed", OTHER))
 CHECK_SHARE = 0.6  # of the length of the practice
@@ -69,7 +68,7 @@ def practise(
     pose = np.array([angle if joint in nominal.joints_in_use else 0.0 for joint, angle in enumerate(START_POSE_RAD)])
     save_leader(rest, Trajectory(np.array([0.0, 1.0]), np.array([pose, pose])))
     untuned = tables(base)[0]
-    designed = design(nominal, pose, table=untuned, seconds=seconds, budget=DESIGN_BUDGET, report=named("practice"))
+    designed = design(nominal, pose, table=untuned, seconds=seconds, budget=GOOD_BUDGET, report=named("practice"))
     save_leader(motion, designed.motion)
     logs: list[Log] = []
     left_out: list[str] = []

@@ -32,6 +32,7 @@ from greywhale.optimise import DEFAULT, create
 from greywhale.protocol.table import ParameterTable
 
 BUDGET = 300
+GOOD_BUDGET = 150  # finds a good motion; the last evaluations of a search for the best one would gain little
 MOST_BUDGET = 100_000  # takes a day
 SECONDS = 20.0
 # The quantities that count where an arm file does not say what is known: as in a usual identification.

@@ -30,9 +30,8 @@ from greywhale.protocol.firmware import JOINTS, pwm_steps
 from greywhale.protocol.table import ParameterTable
 from greywhale.tune.limits import TUNING_LIMITS, MarginLimits, TuningLimits
 from greywhale.tune.search.objective import follow, pair_with_plants
-from greywhale.tune.search.training import centre, reach, training_motions
+from greywhale.tune.search.training import WAIT_S, centre, reach, training_motions
 
-WAIT_S = 0.2  # before a motion begins
 _MOVING_SEED = 50  # of sensor noise that no search hears
 
 # Loop gains are factors of every joint's torque per volt.
