@@ -72,7 +72,6 @@ ALLOWED = {
         "SHORT_BUDGET": COUNTS,
         "JUDGING_SEED": SEED,
     },
-    "tune/judge/choose.py": {"ROUNDS": COUNTS},
     "tune/judge/held_out.py": {"WAIT_S": DRAWN, "SEED": SEED, "EVERY": DRAWN},
     "tune/judge/margins.py": {"_MOVING_SEED": SEED},
     "tune/model.py": {"SAMPLES": ASKED, "MOST_SAMPLES": ASKED},

@@ -90,17 +90,14 @@ def unrest(result: Result, rests: Sequence[tuple[int, int]], cycle: Hunting, sup
     return Unrest(reversals, travel, beats, loud, fails, lost)
 
 
-def penalty(found: Mapping[str, Unrest], quiet_v: Floats, strict: bool) -> Floats:
+def penalty(found: Mapping[str, Unrest], quiet_v: Floats) -> Floats:
     """Prices (n, 4) of candidates on some plants."""
-    fail_price = MARGINS.strict_fail_price if strict else MARGINS.fail_price
     share = found[AT_REST].ripple.mean(axis=1) / quiet_v
     beyond = np.maximum(share - MARGINS.search_ripple_share, 0.0)
     total = MARGINS.ripple_price * share + MARGINS.loud_price * beyond
     for scenario, one in found.items():
-        fails = (MARGINS.teeth_price if scenario == TEETH else fail_price) * one.fails
-        excess = np.maximum(one.chatter / SWINGS.chatter_at_rest_hz - MARGINS.search_chatter_share, 0.0)
-        calm = MARGINS.travel_price * one.travel + MARGINS.chatter_price * excess
-        total = total + (calm + fails + MARGINS.lost_price * one.lost).mean(axis=1)
+        fails = (MARGINS.teeth_price if scenario == TEETH else MARGINS.fail_price) * one.fails
+        total = total + (MARGINS.travel_price * one.travel + fails + MARGINS.lost_price * one.lost).mean(axis=1)
     return np.asarray(total)
 
 

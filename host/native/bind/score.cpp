@@ -155,13 +155,12 @@ std::vector<score::Scenario> scenarios_of(const std::vector<int>& numbers) {
   return scenarios;
 }
 
-nb::object unrest_prices(const std::vector<int>& scenarios, const UnrestRows& unrest, const Quiet& quiet_v, bool strict,
-                         const Numbers<score::MarginLimits>& margins, const Bounds& swings) {
+nb::object unrest_prices(const std::vector<int>& scenarios, const UnrestRows& unrest, const Quiet& quiet_v,
+                         const Numbers<score::MarginLimits>& margins) {
   require(scenarios.size() == unrest.shape(0), "every scenario needs its unrest.");
   const score::Looked looked{scenarios_of(scenarios), unrest.shape(1), unrest.shape(2),
                              reinterpret_cast<const score::Unrest*>(unrest.data())};
-  const auto found = score::unrest_prices(looked, quiet_v, strict, struct_of<score::MarginLimits>(margins),
-                                          struct_of<score::SwingBounds>(swings));
+  const auto found = score::unrest_prices(looked, quiet_v, struct_of<score::MarginLimits>(margins));
   Array<double> prices({looked.count, kJoints});
   std::copy(found.begin(), found.end(), prices.data());
   return prices.numpy();
@@ -198,8 +197,8 @@ void bind_score(nb::module_& m) {
   m.def("unrest", &unrest, nb::kw_only(), "result"_a, "pwm_top"_a, "rests"_a, "band_rad"_a, "turns"_a, "supply_v"_a,
         "swings"_a, "measure"_a,
         "Reversals, travel, chatter, fails and lost of the worst rest, and fourth the ripple of all rests: n x 4 x 6.");
-  m.def("unrest_prices", &unrest_prices, nb::kw_only(), "scenarios"_a, "unrest"_a, "quiet_v"_a, "strict"_a, "margins"_a,
-        "swings"_a, "Prices n x 4 of the unrest in some scenarios, scenarios x n x plants x 4 x 6.");
+  m.def("unrest_prices", &unrest_prices, nb::kw_only(), "scenarios"_a, "unrest"_a, "quiet_v"_a, "margins"_a,
+        "Prices n x 4 of the unrest in some scenarios, scenarios x n x plants x 4 x 6.");
   m.def("falls_short", &falls_short, nb::kw_only(), "scenarios"_a, "failing"_a, "ripple_v"_a, "may_fail"_a, "quiet_v"_a,
         "kept"_a, "choice"_a, "Who falls short of the standard, n x 4.");
   m.def(

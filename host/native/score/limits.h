@@ -40,12 +40,9 @@ struct MarginLimits {
   double rest_s;
   double long_rest_s;
   double search_beyond;
-  double search_chatter_share;
   double search_ripple_share;
   double travel_price;
-  double chatter_price;
   double fail_price;
-  double strict_fail_price;
   double teeth_price;
   double ripple_price;
   double loud_price;
@@ -53,10 +50,8 @@ struct MarginLimits {
 };
 
 struct ChoiceLimits {
-  double worse_ratio;
   double joint_slack;
   double kept_joint_slack;
-  double enough_gain_share;
   double second_chances;
   double unfit_cost;
   double unrest_weight_on_arm;

@@ -47,17 +47,14 @@ double ripple_price(const Looked& looked, std::size_t n, std::size_t joint, doub
 }
 
 // The mean over the plants.
-double scenario_price(const Looked& looked, std::size_t scenario, std::size_t n, std::size_t joint, bool strict,
-                      const MarginLimits& limits, const SwingBounds& swings) {
-  const double fail_price = looked.scenarios[scenario] == Scenario::soft_teeth ? limits.teeth_price
-                            : strict                                           ? limits.strict_fail_price
-                                                                               : limits.fail_price;
+double scenario_price(const Looked& looked, std::size_t scenario, std::size_t n, std::size_t joint,
+                      const MarginLimits& limits) {
+  const bool soft = looked.scenarios[scenario] == Scenario::soft_teeth;
+  const double fail_price = soft ? limits.teeth_price : limits.fail_price;
   double sum = 0.0;
   for (std::size_t plant = 0; plant < looked.plants; ++plant) {
     const Unrest& one = looked.at(scenario, n, plant, joint);
-    const double excess = larger(one.chatter / swings.chatter_at_rest_hz - limits.search_chatter_share, 0.0);
-    sum += limits.travel_price * one.travel + limits.chatter_price * excess + fail_price * one.fails +
-           limits.lost_price * one.lost;
+    sum += limits.travel_price * one.travel + fail_price * one.fails + limits.lost_price * one.lost;
   }
   return sum / static_cast<double>(looked.plants);
 }
@@ -96,15 +93,15 @@ double quiet_ripple(double ripple_before, double supply_v, const SwingBounds& sw
   return larger(ripple_before, swings.quiet_share * supply_v);
 }
 
-std::vector<double> unrest_prices(const Looked& looked, const std::array<double, kJoints>& quiet_v, bool strict,
-                                  const MarginLimits& limits, const SwingBounds& swings) {
+std::vector<double> unrest_prices(const Looked& looked, const std::array<double, kJoints>& quiet_v,
+                                  const MarginLimits& limits) {
   std::vector<double> prices(looked.count * kJoints);
   for (std::size_t n = 0; n < looked.count; ++n) {
     for (std::size_t i = 0; i < kJoints; ++i) {
       double& price = prices[n * kJoints + i];
       price = ripple_price(looked, n, i, quiet_v[i], limits);
       for (std::size_t scenario = 0; scenario < looked.scenarios.size(); ++scenario)
-        price += scenario_price(looked, scenario, n, i, strict, limits, swings);
+        price += scenario_price(looked, scenario, n, i, limits);
     }
   }
   return prices;

@@ -48,9 +48,9 @@ struct Looked {
 // The ripple that is allowed at rest: that from before, or a share of the supply.
 double quiet_ripple(double ripple_before, double supply_v, const SwingBounds& swings);
 
-// Prices of candidates, count x 4, mostly for scenarios that fail; `strict`: a failure costs more.
-std::vector<double> unrest_prices(const Looked& looked, const std::array<double, kJoints>& quiet_v, bool strict,
-                                  const MarginLimits& limits, const SwingBounds& swings);
+// Prices of candidates, count x 4, mostly for scenarios that fail.
+std::vector<double> unrest_prices(const Looked& looked, const std::array<double, kJoints>& quiet_v,
+                                  const MarginLimits& limits);
 
 // On how many plants each joint fails: scenarios x count x 4.
 std::vector<double> failing_in(const Looked& looked);

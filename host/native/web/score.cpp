@@ -157,7 +157,7 @@ EXPORT(costs) void exported_costs(unsigned searching) {
           followed[at], drills[c].scale[at % kJoints], limits.supply_v, limits.cost, limits.swings);
   }
   const Unrests all = unrests_of(stops.at(searching), table, false);
-  found = score::unrest_prices(all.looked, before.quiet_v, false, limits.margins, limits.swings);
+  found = score::unrest_prices(all.looked, before.quiet_v, limits.margins);
   for (std::size_t n = 0; n < count; ++n) {
     const auto totals = score::total_costs(&relative[n * each], 1, importances, limits.cost);
     for (std::size_t i = 0; i < kJoints; ++i) found[n * kJoints + i] += totals[i];

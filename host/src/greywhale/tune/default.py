@@ -279,14 +279,10 @@ class DefaultMethod:
         return _Chosen(after, margins, cost_before, cost_after), worse & changed
 
     def _search_again(self, rows: Controllers, short: Flags) -> Controllers:
-        """The best few (k, 4, 13) of a last search for joints that fall `short` (4,) beside the others of `rows`.
-
-        A failure costs more than in the search before.
-        """
+        """The best few (k, 4, 13) of a last search for joints that fall `short` (4,) beside the others of `rows`."""
 
         def costs(controllers: Controllers) -> Floats:
-            unrest = self.margins.unrest(controllers)
-            restless = penalty(unrest, self.standard.quiet_v, self.limits, strict=True)
+            restless = penalty(self.margins.unrest(controllers), self.standard.quiet_v, self.limits)
             found = self.objective.follow(controllers)
             return self.objective.costs_of(found) + restless + self.following_before().price(found, controllers)
 

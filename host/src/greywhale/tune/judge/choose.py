@@ -12,8 +12,6 @@ from greywhale.tune.limits import TUNING_LIMITS, ChoiceLimits
 
 Judge = Callable[[Controllers], Floats]
 
-ROUNDS = 3  # of trying other candidates of joints that disappoint
-
 
 class CachedJudge:
     """A judge that does not judge the same row again: a row's costs (4,) depend on that row (4, 13) alone."""
@@ -38,9 +36,7 @@ def choose(
 
     No joint costs more than `joint_slack` times what it costs in `start`. `contenders` (k, 4, 13) hold the k-th
     best of every joint. Each row is judged as it stands, then every joint's best among the neighbours of `start`,
-    then the best of every joint together. Where a joint turns out worse among its new neighbours, its other
-    candidates are tried there, also the one that it had in `start`. If that gains little, the joints of `start` are
-    exchanged one after the other instead.
+    then the best of every joint together. In the best of these rows, the joints are exchanged one after the other.
     """
     alone = np.repeat(start[None], len(start), axis=0)
     for joint in range(len(start)):
@@ -48,27 +44,19 @@ def choose(
     rows = np.concatenate([start[None], contenders, alone])
     costs = judge(rows)
     before = costs[0]
-    mixed = _take_best_of_each(rows, costs)
-    for _ in range(ROUNDS):
-        now = judge(mixed[None])[0]
-        rows, costs = np.concatenate([rows, mixed[None]]), np.concatenate([costs, now[None]])
-        disappointing = np.flatnonzero(now > limits.worse_ratio * costs.min(axis=0))
-        if not disappointing.size:
-            break
-        tried = _exchange(mixed, np.concatenate([contenders, start[None]]), disappointing)
-        outcome = judge(tried)
-        rows, costs = np.concatenate([rows, tried]), np.concatenate([costs, outcome])
-        mixed = tried[int(np.argmin(outcome.sum(axis=1)))]
+    mixed = _take_best_of_each(rows, costs)[None]
+    rows, costs = np.concatenate([rows, mixed]), np.concatenate([costs, judge(mixed)])
     fair = is_fair(costs, before, limits.joint_slack)
     best = int(np.argmin(np.where(fair, costs.sum(axis=1), np.inf)))
     chosen, cost = rows[best].copy(), costs[best]
-    hoped_for = before.sum() - costs.min(axis=0).sum()
-    if before.sum() - cost.sum() < limits.enough_gain_share * hoped_for:
-        built, its = _build_up(start, before, before, contenders, judge, limits.joint_slack)
-        if its.sum() < cost.sum():
-            chosen, cost = built, its
-    # Once more: a joint may now accept a candidate that it could not accept among its old neighbours.
-    chosen, cost = _build_up(chosen, cost, before, contenders, judge, limits.joint_slack)
+    # A joint may now accept a candidate that it could not accept among its old neighbours.
+    for joint in range(len(chosen)):
+        tried = _exchange(chosen, contenders, joint)
+        outcome = judge(tried)
+        sums = np.where(is_fair(outcome, before, limits.joint_slack), outcome.sum(axis=1), np.inf)
+        if sums.min() < cost.sum():
+            best = int(np.argmin(sums))
+            chosen, cost = tried[best], outcome[best]
     return chosen, before, cost
 
 
@@ -99,20 +87,6 @@ def is_fair(costs: Floats, before: Floats, slack: float) -> npt.NDArray[np.bool_
     return fair
 
 
-def _build_up(
-    chosen: Controllers, cost: Floats, before: Floats, contenders: Controllers, judge: Judge, slack: float
-) -> tuple[Controllers, Floats]:
-    """`chosen`, with one joint after the other exchanged for the fair candidate that lowers the sum most."""
-    for joint in range(len(chosen)):
-        tried = _exchange(chosen, contenders, np.array([joint]))
-        costs = judge(tried)
-        sums = np.where(is_fair(costs, before, slack), costs.sum(axis=1), np.inf)
-        best = int(np.argmin(sums))
-        if sums[best] < cost.sum():
-            chosen, cost = tried[best], costs[best]
-    return chosen, cost
-
-
 def _take_best_of_each(rows: Controllers, costs: Floats) -> Controllers:
     best: Controllers = rows[0].copy()
     for joint, row in enumerate(np.argmin(costs, axis=0)):
@@ -120,13 +94,9 @@ def _take_best_of_each(rows: Controllers, costs: Floats) -> Controllers:
     return best
 
 
-def _exchange(mixed: Controllers, others: Controllers, joints: npt.NDArray[np.intp]) -> Controllers:
-    """Copies of `mixed` with one of these joints replaced by each of its other candidates."""
-    tried = []
-    for joint in joints:
-        for other in np.unique(others[:, joint], axis=0):
-            if not np.array_equal(other, mixed[joint]):
-                row = mixed.copy()
-                row[joint] = other
-                tried.append(row)
-    return np.stack(tried) if tried else mixed[None].copy()
+def _exchange(mixed: Controllers, others: Controllers, joint: int) -> Controllers:
+    """Copies of `mixed` (4, 13) in which a joint has each of the controllers of `others` (k, 4, 13)."""
+    choices = np.unique(others[:, joint], axis=0)
+    tried: Controllers = np.repeat(mixed[None], len(choices), axis=0)
+    tried[:, joint] = choices
+    return tried

@@ -183,7 +183,7 @@ def _best(loop: _Loop, limits: FloorLimits) -> Floats:
     least = totals.min()
     rigid = rigid_joints(loop.plant)
     # The pitch joints pull at each other most, so they go first.
-    for joint in (1, 2, 0, 3) if least > limits.nothing_to_gain_rad2 else ():
+    for joint in (1, 2, 0, 3) if least > limits.backlash_rad2 else ():
         if rigid[joint]:
             continue
         tried = np.repeat(best[None], len(limits.tried_brakes), axis=0)

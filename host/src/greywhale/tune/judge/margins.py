@@ -240,19 +240,13 @@ class Margins:
         ]
 
 
-def penalty(
-    found: Mapping[str, Unrest], quiet_v: Floats, judging: TuningLimits = TUNING_LIMITS, *, strict: bool = False
-) -> Floats:
-    """Price candidates (n, 4), mostly for scenarios that fail; `quiet_v` (4,) is the ripple that is allowed. With
-    `strict` a failure costs more.
-    """
+def penalty(found: Mapping[str, Unrest], quiet_v: Floats, judging: TuningLimits = TUNING_LIMITS) -> Floats:
+    """Price candidates (n, 4), mostly for scenarios that fail; `quiet_v` (4,) is the ripple that is allowed."""
     prices = _native.unrest_prices(
         scenarios=[SCENARIOS.index(name) for name in found],
         unrest=np.stack([one.numbers for one in found.values()]),
         quiet_v=quiet_v.tolist(),
-        strict=strict,
         margins=numbers_in(judging.margins),
-        swings=numbers_in(judging.swings),
     )
     return np.asarray(prices)
 

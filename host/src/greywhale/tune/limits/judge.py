@@ -11,7 +11,7 @@ from greywhale.base.limits import BY_DEFINITION, MEASURED_IN_SEARCHES, MEASURED_
 class FloorLimits:
     """The least error that the supply allows to any controller (`judge/floor.py`)."""
 
-    backlash_rad2: float = limit(1e-4, "rad²", "a lower floor may be mere backlash")
+    backlash_rad2: float = limit(1e-4, "rad²", "a lower floor may be mere backlash; for less no brake is tried")
     tellable_rad2: float = limit(1e-6, "rad²", "a lower one no potentiometer could tell")
     tried_settling_s: tuple[float, ...] = limit(
         (0.001, 0.004),
@@ -22,7 +22,6 @@ class FloorLimits:
     tried_brakes: tuple[float, ...] = limit(
         (0.85, 0.95, 1.1, 1.25), "of the braking curve", "when it brakes, tried for one joint after the other"
     )
-    nothing_to_gain_rad2: float = limit(1e-4, "rad² in total", "below this no brake is tried")
     rest_s: float = limit(0.3, "s", "rest of the leader before a move that bounds the error")
     rest_rad: float = limit(0.004, "rad", "the leader rests within this")
     waiting_rad: float = limit(0.01, "rad", "a follower this close to its leader waits")
@@ -43,12 +42,9 @@ class MarginLimits:
     rest_s: float = limit(2.2, "s", "a rest in the first search")
     long_rest_s: float = limit(4.0, "s", "a later rest: an integral swings slowly", MEASURED_IN_SEARCHES)
     search_beyond: float = limit(1.15, "times", "gains of a search are further off")
-    search_chatter_share: float = limit(0.7, "of the limit", "a search already pays for this much chatter")
     search_ripple_share: float = limit(0.9, "of the limit", "a search already pays for this much ripple")
     travel_price: float = limit(0.5, "of what is possible", "for each rad/s of swinging in a limit cycle")
-    chatter_price: float = limit(0.03, "of what is possible", "for as much chatter at rest as is allowed")
     fail_price: float = limit(0.15, "of what is possible", "for a scenario that fails")
-    strict_fail_price: float = limit(0.6, "of what is possible", "the same for a joint that is searched again")
     teeth_price: float = limit(
         0.08,
         "of what is possible",
@@ -63,11 +59,6 @@ class MarginLimits:
 class ChoiceLimits:
     """Limits of the controllers that are uploaded together."""
 
-    worse_ratio: float = limit(
-        1.03,
-        "times its best cost elsewhere",
-        "a joint that costs more tries its other candidates",
-    )
     joint_slack: float = limit(
         1.01,
         "times the cost before",
@@ -78,11 +69,6 @@ class ChoiceLimits:
         "times the cost before",
         "a joint that keeps its controller may lose so much",
         MEASURED_IN_SEARCHES,
-    )
-    enough_gain_share: float = limit(
-        0.5,
-        "of what each joint could gain alone",
-        "if joints together gain less, another way is tried",
     )
     second_chances: int = limit(3, "candidates", "others for a joint that fails, the best first")
     gain_reductions: tuple[tuple[float, float], ...] = limit(

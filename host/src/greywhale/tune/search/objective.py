@@ -28,7 +28,7 @@ the rattling and that before, a class costs
 `margins` adds the price of unrest, in the mean over the plants, where quiet is the ripple that is allowed at rest:
 
     0.05 ripple / quiet  +  max(0, ripple / quiet - 0.9)  +  for each margin at rest:
-    0.5 travel  +  0.03 max(0, chatter / 50 Hz - 0.7)  +  0.15 if it fails (softer teeth: 0.08)  +  10 if it is lost
+    0.5 travel  +  0.15 if it fails (softer teeth: 0.08)  +  10 if it is lost
 
 All of it is worked out by `host/native/score`, for a page too; tests/tune/reference.py repeats it slowly.
 """
