@@ -86,7 +86,7 @@ def _enum(enum: Enum) -> str:
     for value in enum.values:
         cause = f" Raised when: {value.cause}." if value.cause else ""
         detail = f" Detail: {value.detail}." if value.detail not in ("", "0") else ""
-        remedy = f" {value.remedy}" if value.remedy else ""
+        remedy = f" {value.remedy}" if value.remedy and value.value else ""
         end = "." if cause or detail or remedy else ""
         lines.append(f"- {value.value} `{value.name}`: {value.description}{end}{detail}{cause}{remedy}")
     return "\n".join([f"### {enum.name}", "", enum.description, "", *lines])
@@ -123,14 +123,17 @@ def _groups(declaration: Declaration) -> list[str]:
 def _group(group: Group, first: int) -> str:
     step = len(group.parameters)
     last = first + group.count * step - 1
-    where = f"Index {first}..{last}" + (f": {first} + {step} x element + place." if group.count > 1 else ".")
+    where = f"Index {first}" + (f"..{last}" if last > first else "")
+    where += f": {first} + {step} x element + place." if group.count > 1 else "."
     if group.since > 1:
         where += f" Since layout {group.since}."
     lines = [
         f"- {place if group.count > 1 else first + place} {_parameter(group, one)}"
         for place, one in enumerate(group.parameters)
     ]
-    return "\n".join([f"### {group.title}", "", f"{group.description} {where}", "", *lines])
+    return "\n".join(
+        [f"### {group.title}", "", f"{group.description} {where}".removeprefix(f"{group.title}. "), "", *lines]
+    )
 
 
 def _parameter(group: Group, parameter: Parameter) -> str:
