@@ -17,12 +17,13 @@ from greywhale.protocol.firmware import ANGLE_LSB, FASTEST_LED_RAD_S
 from greywhale.protocol.schema import Sample
 from lerobot_robot_greywhale.config import GreywhaleConfig
 from lerobot_robot_greywhale.link import Link, Motors
+from lerobot_robot_greywhale.part import Part
 
 # An action that says what the leader said differs from that by rounding alone, rad.
 _SAME_RAD = 1e-3
 
 
-class Greywhale(Robot):
+class Greywhale(Part, Robot):
     """Angles are in rad, voltages in V. The calibration is on the board: `greywhale calibrate`."""
 
     config_class = GreywhaleConfig
@@ -39,30 +40,11 @@ class Greywhale(Robot):
         self.cameras: dict[str, Any] = make_cameras_from_configs(config.cameras)
         self._joints = tuple(config.joints)
         self._angles, self._volts = names_of(self._joints, "pos"), names_of(self._joints, "voltage")
-        self._link: Link | None = None
 
     @cached_property
     def observation_features(self) -> dict[str, Any]:
         pictures = {name: (one.height, one.width, 3) for name, one in self.cameras.items()}
         return {**dict.fromkeys([*self._angles, *self._volts], float), **pictures}
-
-    @cached_property
-    def action_features(self) -> dict[str, type]:
-        return dict.fromkeys(self._angles, float)
-
-    @property
-    def is_connected(self) -> bool:
-        return self._link is not None
-
-    @property
-    def is_calibrated(self) -> bool:
-        return True
-
-    def calibrate(self) -> None:
-        """The board keeps its calibration."""
-
-    def configure(self) -> None:
-        """The board keeps its parameters."""
 
     @check_if_already_connected
     def connect(self, calibrate: bool = True) -> None:
@@ -125,8 +107,3 @@ class Greywhale(Robot):
                     last.callback(camera.disconnect)
             if link.works:
                 link.turn(Motors.OFF)
-
-    @property
-    def _linked(self) -> Link:
-        assert self._link is not None
-        return self._link
