@@ -96,7 +96,7 @@ mypy: $(READY)
 	@echo mypy
 	@$(MYPY)
 
-# The branches of base/system.py that no test runs here. Windows lacks much that rooms beside it might use by mistake,
+# The branches of base/system.py and sockets.py that no test runs here. Windows lacks much that rooms beside might use by mistake,
 # macOS nothing. A cache each: mypy keeps none for two systems.
 mypy-win32: $(READY)
 	@echo mypy for Windows
@@ -104,7 +104,7 @@ mypy-win32: $(READY)
 
 mypy-darwin: $(READY)
 	@echo mypy for macOS
-	@$(MYPY) --platform darwin --cache-dir .mypy_cache/darwin host/src/greywhale/base/system.py
+	@$(MYPY) --platform darwin --cache-dir .mypy_cache/darwin $(addprefix host/src/greywhale/base/,system.py sockets.py)
 
 cppcheck-firmware: $(READY)
 	$(CPPCHECK) --std=c++14 '-DISR(vector,...)=void vector()' firmware/lib firmware/src

@@ -41,8 +41,9 @@ def refuse(port, *options, **named):
 
 serial.Serial = refuse
 here, sys.platform = sys.platform, "win32"
-from greywhale.base import system
-sys.platform, system.sys = here, types.SimpleNamespace(platform="win32")
+from greywhale.base import sockets, system
+sys.platform, sockets.sys = here, types.SimpleNamespace(platform="win32")
+system.sys = sockets.sys
 """
 
 

@@ -13,7 +13,8 @@ import pytest
 import serial
 
 from greywhale.base.errors import UserError
-from greywhale.board.device import STOP_REPEAT_S, Device, NoAnswerError
+from greywhale.board.device import STOP_REPEAT_S, Device
+from greywhale.board.greeting import NoAnswerError
 from greywhale.board.refusal import RefusedError
 from greywhale.protocol import schema
 from greywhale.protocol.frames import encode_frame

@@ -16,7 +16,7 @@ import pytest
 from starlette.responses import PlainTextResponse
 from starlette.types import Receive, Scope, Send
 
-from greywhale.base import system
+from greywhale.base import sockets, system
 from greywhale.dashboard import connections, guard, server
 from greywhale.dashboard.door import GRACE_S, PATIENCE_S, Door
 from greywhale.dashboard.guard import SUBPROTOCOL, Guard
@@ -210,7 +210,7 @@ def test_another_users_connections_are_closed_where_the_system_tells(
     owner: int | None, user: int, foreign: bool, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
     monkeypatch.setattr(system, "user", lambda: user)
-    monkeypatch.setattr(system, "owner_of", lambda end, other: owner)
+    monkeypatch.setattr(sockets, "owner_of", lambda end, other: owner)
     with serving(Door()) as page:
         said = [rest(connect(page, b"GET / HTTP/1.1\r\nConnection: close\r\n\r\n")) for _ in range(3)]
     assert [b"HTTP" in one for one in said] == 3 * [not foreign]
@@ -225,8 +225,8 @@ def test_the_system_tells_whose_a_connection_is(host: str) -> None:
         own.connect((host, listener.getsockname()[1]))
         accepted, end = listener.accept()
         with accepted:
-            assert system.owner_of(end, accepted.getsockname()) == os.geteuid()
-            assert system.owner_of(end, ("127.0.0.1", 1)) is None
+            assert sockets.owner_of(end, accepted.getsockname()) == os.geteuid()
+            assert sockets.owner_of(end, ("127.0.0.1", 1)) is None
 
 
 def test_odd_requests_leave_no_line(caplog: pytest.LogCaptureFixture) -> None:

@@ -18,6 +18,7 @@ from typing import Any, Self
 
 from greywhale.base.errors import UserError
 from greywhale.base.interrupts import hold_back
+from greywhale.board.greeting import NoAnswerError, hello_in, silence, version
 from greywhale.board.refusal import RefusedError
 from greywhale.board.session import Session
 from greywhale.protocol import schema
@@ -41,18 +42,6 @@ logger = logging.getLogger(__name__)
 
 # Requests count 1..255; the hello that a starting board sends by itself has this sequence number.
 _UNASKED_SEQ = 0
-
-
-class FirmwareError(UserError):
-    """No firmware that speaks this host's words answers at the port: flashing it is the remedy."""
-
-
-class NoAnswerError(UserError):
-    """The board stayed silent through all repeats of a request."""
-
-
-class NoGreetingError(NoAnswerError, FirmwareError):
-    """The board said nothing from the opening of its port on."""
 
 
 class RestartedError(UserError):
@@ -98,10 +87,10 @@ class Device:
             self._session.attach(self._send_stop, self._send_clutch)
             try:
                 self.hello: schema.HelloReply = self._greet(quiet_s if self.restarted else 0.0, patience_s)
-            except NoAnswerError as silence:
+            except NoAnswerError as unheard:
                 if self.restarted:
                     raise
-                self._restart(silence)
+                self._restart(unheard)
                 self.hello = self._greet(quiet_s, patience_s)
             self._held = held.pop_all()
         logger.info(
@@ -153,8 +142,8 @@ class Device:
         self._session.check()
         try:
             payload = self._exchange(request.TYPE, request.NAME, request.pack(), REQUEST_ATTEMPTS)
-        except NoAnswerError as silence:
-            raise disturbance(self._transport) or silence from None
+        except NoAnswerError as unheard:
+            raise disturbance(self._transport) or unheard from None
         try:
             return request.reply(payload)
         except UserError as error:
@@ -360,12 +349,12 @@ class Device:
             return f"The stop is not confirmed; the board stops by itself within {self.lease_ms} ms."
         return "The stop is not confirmed: switch the motors' supply off."
 
-    def _restart(self, silence: NoAnswerError) -> None:
+    def _restart(self, unheard: NoAnswerError) -> None:
         """Open the port anew: another program may have left the board in its bootloader, which only that ends."""
         self._transport.close()
         self._transport = open_line(self.port)
         if not self.restarted:  # a lent line
-            raise silence
+            raise unheard
 
     def _greet(self, quiet_s: float, patience_s: float) -> schema.HelloReply:
         clock = self._transport.clock
@@ -378,52 +367,15 @@ class Device:
                 break
             except NoAnswerError:
                 if clock() >= opened + patience_s:
-                    raise self._silent(patience_s) from None
+                    raise disturbance(self._transport) or silence(self.port, patience_s, self._heard_bytes) from None
         self._started = None
         self._greeted = True
-        return self._check_language(payload)
-
-    def _check_language(self, payload: bytes) -> schema.HelloReply:
-        """Return the hello if its sender was built from the same declarations as this host."""
-        remedy = f"flash the firmware that belongs to this host with `greywhale flash --port {self.port}`."
-        if not payload or payload[0] != schema.PROTOCOL:
-            spoken = payload[0] if payload else "none"
-            raise FirmwareError(
-                f"{self.port}: the board speaks protocol version {spoken}, this host version {schema.PROTOCOL}; "
-                f"{remedy}"
-            )
-        try:
-            hello = schema.HelloReply.unpack(payload)
-        except UserError as error:
-            raise UserError(f"{self.port}: {error.message}") from None
-        if hello.schema_hash != schema.SCHEMA_HASH:
-            raise FirmwareError(
-                f"{self.port}: firmware {version(hello)} was built with schema {hello.schema_hash:#010x}, "
-                f"this host with {schema.SCHEMA_HASH:#010x}; {remedy}"
-            )
-        return hello
-
-    def _silent(self, patience_s: float) -> UserError:
-        if disturbed := disturbance(self._transport):
-            return disturbed
-        if self._heard_bytes:
-            return FirmwareError(
-                f"{self.port}: something sends data, but no greywhale firmware answers within {patience_s:g} s; "
-                f"flash the board with `greywhale flash --port {self.port}`, or name another port."
-            )
-        return NoGreetingError(
-            f"{self.port}: nothing answers within {patience_s:g} s; the board has probably no greywhale firmware: "
-            f"flash it with `greywhale flash --port {self.port}`, or name another port."
-        )
+        return hello_in(payload, self.port)
 
 
 def stop_message(sequence: int) -> bytes:
     """A stop as it goes over the line: twice, each after a 00 that ends whatever the line has left in the receiver."""
     return 2 * (b"\0" + encode_frame(schema.StopRequest.TYPE, sequence, schema.StopRequest().pack()))
-
-
-def version(hello: schema.HelloReply) -> str:
-    return f"{hello.fw_major}.{hello.fw_minor}.{hello.fw_patch}"
 
 
 def hold_ctrl_c() -> AbstractContextManager[None]:

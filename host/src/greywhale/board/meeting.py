@@ -17,7 +17,7 @@ import time
 from collections.abc import Container, Iterator
 from typing import NamedTuple
 
-from greywhale.base import system
+from greywhale.base import sockets, system
 from greywhale.base.errors import UserError
 from greywhale.protocol.holder import describe
 from greywhale.protocol.lines import device_of
@@ -42,7 +42,7 @@ class Peer(NamedTuple):
 
 def peer_of(connection: socket.socket) -> Peer:
     """The user at the other end, by the system's word."""
-    return Peer(*system.peer_of(connection))
+    return Peer(*sockets.peer_of(connection))
 
 
 def names_of(device: str) -> list[str]:
@@ -53,7 +53,7 @@ def names_of(device: str) -> list[str]:
 def listen(port: str, device: str) -> socket.socket:
     """Listen for this user. A UserError where another session of this user has the port, an OSError without a name."""
     for name in names_of(device):
-        listener = system.abstract_socket()
+        listener = sockets.abstract_socket()
         try:
             taken = not _take(listener, name)
             _refuse_second(port, device)
@@ -100,7 +100,7 @@ def find(port: str, patience_s: float) -> tuple[socket.socket, Peer] | None:
 
     Where others crowd a name, it is tried again until the patience ends.
     """
-    device = device_of(port) if system.HAS_ABSTRACT_SOCKETS else None
+    device = device_of(port) if sockets.HAS_ABSTRACT_SOCKETS else None
     end = time.monotonic() + patience_s
     while device is not None:
         try:
@@ -120,7 +120,7 @@ def _connections(device: str) -> Iterator[tuple[socket.socket, Peer]]:
     """Every one who listens at a device's names, of whatever user; at last BlockingIOError where a door was crowded."""
     crowded = None
     for name in names_of(device):
-        client = system.abstract_socket()
+        client = sockets.abstract_socket()
         client.setblocking(False)
         try:
             client.connect(name)

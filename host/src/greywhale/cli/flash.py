@@ -8,8 +8,8 @@ import click
 
 from greywhale.base.telling import Step, told
 from greywhale.base.types import Crc
-from greywhale.board.device import version
 from greywhale.board.flash import BOARDS, flash
+from greywhale.board.greeting import version
 from greywhale.cli.output import FILE, OnPort, json_option, option, port_option, progress, show
 from greywhale.protocol.ports import choose_port
 

@@ -17,7 +17,7 @@ from collections import deque
 import uvicorn
 from uvicorn.protocols.http.h11_impl import H11Protocol
 
-from greywhale.base import system
+from greywhale.base import sockets, system
 from greywhale.dashboard.bucket import Bucket
 from greywhale.dashboard.door import Door
 
@@ -212,4 +212,4 @@ def is_foreign(connection: socket.socket) -> bool:
         ends = connection.getpeername(), connection.getsockname()
     except OSError:  # it has ended
         return False
-    return system.owner_of(*ends) not in (None, _ROOT, user)
+    return sockets.owner_of(*ends) not in (None, _ROOT, user)

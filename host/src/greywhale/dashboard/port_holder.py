@@ -8,7 +8,8 @@ import threading
 from collections.abc import Callable, Iterator
 
 from greywhale.base.errors import UserError
-from greywhale.board.device import Device, FirmwareError
+from greywhale.board.device import Device
+from greywhale.board.greeting import FirmwareError
 from greywhale.board.refusal import upper_first
 from greywhale.board.session import Session, StopAsked
 from greywhale.dashboard.relay import Relay
