@@ -34,7 +34,7 @@ BOUNDS: dict[str, dict[str, tuple[float, float]]] = {
     "M3": MOTOR | COULOMB | LOAD,
     "M6": MOTOR | COULOMB | STRIBECK | DIRECTIONAL,
 }
-GENERATIONS = {"M1": 60, "M3": 80, "M6": 100}
+GENERATIONS = {"M1": 60, "M3": 80, "M6": 300}
 POPULATION = 6  # times the numbers
 
 
