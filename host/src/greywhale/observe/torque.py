@@ -33,6 +33,8 @@ from greywhale.protocol.table import ParameterTable
 LIVE_EVERY_TICKS = 4  # between samples that are looked at live: each tick would tell much the same
 _LOST = 1.5  # times the spacing: one was lost
 ARMS = 12  # that could have made the log; more would only take longer
+# Rows that are observed at once, so that a log of an hour needs little memory.
+_PART = 1 << 16
 
 
 class Sight(IntEnum):
@@ -178,10 +180,11 @@ class LiveTorque:
         for start, stop in stretches(driven):
             if start or not self._driven:
                 self._observer.restart()
-            rows = slice(start, stop)
-            samples = (time[rows], follower[rows] + self._zero, voltage[rows])
-            found = self._observer.feed(*(np.ascontiguousarray(one, np.float64) for one in samples))
-            told.torque[rows], told.half_width[rows], told.sight[rows], told.contact[rows] = found
+            for begin in range(start, stop, _PART):
+                rows = slice(begin, min(begin + _PART, stop))
+                samples = (time[rows], follower[rows] + self._zero, voltage[rows])
+                found = self._observer.feed(*(np.ascontiguousarray(one, np.float64) for one in samples))
+                told.torque[rows], told.half_width[rows], told.sight[rows], told.contact[rows] = found
         self._driven = bool(driven[-1])
         return told
 
