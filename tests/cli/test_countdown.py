@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from greywhale.base.errors import UserError
+from greywhale.base.errors import INTERRUPTED, UserError
 from greywhale.base.telling import Telling
 from greywhale.cli import countdown, entry, output
 from greywhale.protocol import schema
@@ -77,7 +77,7 @@ def test_ctrl_c_in_the_countdown_keeps_the_arm_still(tmp_path: Path) -> None:
             while b"moves by itself in 3 s" not in text:
                 text += os.read(terminal, 1024)
             host.send_signal(signal.SIGINT)
-        assert host.returncode == entry.INTERRUPTED
+        assert host.returncode == INTERRUPTED
         assert board.asked(schema.LeadRequest) == 0
     os.close(terminal)
     assert not log.exists()
@@ -127,6 +127,6 @@ def test_who_stops_the_count_on_a_page_has_moved_nothing(
     monkeypatch.setattr(output, "watcher", page := Counted(stops))
     monkeypatch.setattr(countdown, "SECOND_S", 0.0)
     with PortBoard() as board:
-        assert entry.run([*verb, "--port", board.port]) == entry.INTERRUPTED
+        assert entry.run([*verb, "--port", board.port]) == INTERRUPTED
         assert [board.asked(start) for start in STARTS] == [0, 0]
     assert page.told == [*range(3, stops - 1, -1), 0]

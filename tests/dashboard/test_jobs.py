@@ -15,7 +15,7 @@ from typing import Any
 
 import pytest
 
-from greywhale.base.errors import UserError
+from greywhale.base.errors import INTERRUPTED, UserError
 from greywhale.base.formats.kinds import Kind
 from greywhale.cli import entry
 from greywhale.cli.catalogue import catalogue
@@ -69,7 +69,7 @@ def test_a_recording_tells_how_far_it_is_and_keeps_what_it_has_when_it_is_stoppe
     assert "record" in half["progress"]["text"]
     desk.jobs.stop(id)
     job = desk.wait(id)
-    assert (job["state"], job["exit_code"]) == ("stopped", entry.INTERRUPTED)
+    assert (job["state"], job["exit_code"]) == ("stopped", INTERRUPTED)
     assert read_log(tmp_path / "long.csv").time.size > 0
 
 

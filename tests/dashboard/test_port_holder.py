@@ -14,8 +14,9 @@ from greywhale.board.session import ask_to_stop
 from greywhale.dashboard.client import Client
 from greywhale.dashboard.history import History
 from greywhale.dashboard.outbox import Outbox
-from greywhale.dashboard.port_holder import ASK_AGAIN_S, LOOK_AGAIN_S, STOPPED, PortHolder
+from greywhale.dashboard.port_holder import LOOK_AGAIN_S, STOPPED, PortHolder
 from greywhale.dashboard.relay import Relay
+from greywhale.dashboard.silence import ASK_AGAIN_S
 from greywhale.protocol import schema
 from greywhale.protocol.lines import open_line
 from tests.board.fake_board import FakeBoard, Faults

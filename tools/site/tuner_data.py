@@ -22,6 +22,7 @@ from greywhale.files.trajectory import Trajectory
 from greywhale.fuzzy.settings import LEAST_WIDTH, SET_UNIT
 from greywhale.loop.closed_loop import Timing, settings_numbers, with_right_motors
 from greywhale.loop.leader import SLICE_S, straight_slices
+from greywhale.loop.leader_motions import RATE_HZ
 from greywhale.measure import swings
 from greywhale.measure.runs import stretches
 from greywhale.optimise import shift_invariant
@@ -37,7 +38,7 @@ from greywhale.tune.search import space, training
 from tools.site.bench_data import pot_numbers
 
 SCALE_RAD = 1e-5
-APART = round(1.0 / training.RATE_HZ / SLICE_S)  # slices between two rows
+APART = round(1.0 / RATE_HZ / SLICE_S)  # slices between two rows
 BUDGET = 500
 SEED = 0
 SHOWN = 1  # the class of motions that a person sees: human-like reaches

@@ -18,13 +18,13 @@ from typing import Self
 import numpy as np
 import pytest
 
-from greywhale.base.errors import UserError
+from greywhale.base.errors import INTERRUPTED, UserError
 from greywhale.board.calibrate import Result
 from greywhale.board.calibrate.solve import Calibration
 from greywhale.board.device import Device
 from greywhale.board.upload import read_parameters
 from greywhale.cli import calibrate as verb
-from greywhale.cli.entry import INTERRUPTED, run
+from greywhale.cli.entry import run
 from greywhale.cli.story import BenchProcess
 from greywhale.protocol.table import ParameterTable
 from tools.support.calibrating_person import CalibratingPerson
