@@ -23,7 +23,7 @@ from tools.benchmarks.figure import Figure
 
 MOTIONS = ("sin_sin", "sin_time_square", "up_and_down")
 LIVELY = MOTIONS[:2]  # in the third the servo stands at full voltage for seconds, which no model here explains
-HELD_OUT = 200  # a gain between others
+HELD_OUT = (200, 400)  # gains between others, one after the other
 DRAWS = 20  # models that the fit allows as well, for an interval
 
 
@@ -33,31 +33,31 @@ def run() -> list[Figure]:
         print("GREYWHALE_BAM names no folder; docs/real_data.md says where BAM's recordings are.", file=sys.stderr)
         return []
     swings, published = read_folder(Path(folder))
-    judged = of_motions(swings, MOTIONS, [HELD_OUT])
-    if not judged:
-        print(f"{folder} has no recording with the gain {HELD_OUT}, which is to be held out.", file=sys.stderr)
-        return []
-    return list(_figures(swings, judged, published))
+    kps = sorted({one.kp for one in swings})
+    return [figure for held in HELD_OUT if held in kps for figure in _figures(held, kps, swings, published)]
 
 
 def _figures(
-    swings: Sequence[Swing], judged: Sequence[Swing], published: Mapping[str, Mapping[str, Any]]
+    held: int, kps: Sequence[int], swings: Sequence[Swing], published: Mapping[str, Mapping[str, Any]]
 ) -> Iterator[Figure]:
-    others = sorted({one.kp for one in swings} - {HELD_OUT})
+    judged, others = of_motions(swings, MOTIONS, [held]), [one for one in kps if one != held]
+    name = f"bam, gain {held} held out"
     for motions, words in ((LIVELY, "lively motions"), (MOTIONS, "all motions")):
         fitted = of_motions(swings, motions, others)
         for model in BOUNDS:
             found = fit(model, fitted)
-            yield _figure(f"bam: BAM's {model}, {words}", errors(found, judged))
+            yield _figure(f"{name}: BAM's {model}, {words}", errors(found, judged))
         ours = identify([one.log() for one in fitted], SERVO_RIG.arm())
         zero = ours.found.zero[SERVO_RIG.joint]
         low, high = _interval(ours, judged)
-        yield Figure(f"bam: greywhale, {words}", mean_error(ours.arm, zero, judged), "mrad", f"{low:.1f}..{high:.1f}")
+        yield Figure(
+            f"{name}: greywhale, {words}", mean_error(ours.arm, zero, judged), "mrad", f"{low:.1f}..{high:.1f}"
+        )
         for one in ours.estimates:
             deviation = "" if one.deviation is None else f"+- {one.deviation:.3g}"
-            yield Figure(f"bam: {one.name}, {words}", one.value, one.unit, deviation)
-    for name, numbers in published.items():
-        yield _figure(f"bam: published {name}", errors(numbers, judged))
+            yield Figure(f"{name}: {one.name}, {words}", one.value, one.unit, deviation)
+    for path, numbers in published.items():
+        yield _figure(f"{name}: published {path}", errors(numbers, judged))
 
 
 def _figure(name: str, found: np.ndarray) -> Figure:
