@@ -28,12 +28,12 @@ def scatter(size: float, logs: int = 6) -> Floats:
 
 
 def test_without_logs_the_formula_stays() -> None:
-    np.testing.assert_array_equal(spread_covariance(FORMULA, np.zeros((0, len(SPACE))), SPACE), FORMULA)
+    np.testing.assert_array_equal(spread_covariance(FORMULA, np.zeros((0, len(SPACE))), SPACE, SPACE.start()), FORMULA)
 
 
 @pytest.mark.parametrize("times", [0.2, 1.0, 10.0, 100.0])
 def test_deviations_grow_with_the_scatter_and_never_fall_far_below_the_formula(times: float) -> None:
-    found = spread_covariance(FORMULA, scatter(times * UNIT), SPACE)
+    found = spread_covariance(FORMULA, scatter(times * UNIT), SPACE, SPACE.start())
     assert np.linalg.eigvalsh(found)[0] > 0.0
     np.testing.assert_allclose(found, found.T)
     deviations = np.sqrt(np.diag(found)) / UNIT
@@ -45,19 +45,19 @@ def test_deviations_grow_with_the_scatter_and_never_fall_far_below_the_formula(t
 def test_one_bad_group_does_not_widen_the_others() -> None:
     off = scatter(UNIT)
     off[:, :2] *= 50.0  # joint 0 alone
-    deviations = np.sqrt(np.diag(spread_covariance(FORMULA, off, SPACE))) / UNIT
+    deviations = np.sqrt(np.diag(spread_covariance(FORMULA, off, SPACE, SPACE.start()))) / UNIT
     assert deviations[:2].min() > 15.0
     assert deviations[2:].max() < 3.0
 
 
 def test_bias_counts_like_scatter() -> None:
     biased = np.tile(np.full(len(SPACE), 5 * UNIT), (6, 1))
-    assert (np.sqrt(np.diag(spread_covariance(FORMULA, biased, SPACE))) > 3 * UNIT).all()
+    assert (np.sqrt(np.diag(spread_covariance(FORMULA, biased, SPACE, SPACE.start()))) > 3 * UNIT).all()
 
 
 def test_numbers_with_several_optima_are_never_more_certain_than_fits_of_known_arms() -> None:
     space = Space.of(load_arm("default"), (*MOTOR, "coulomb", "gap", "drag", "teeth"), range(4))
-    found = spread_covariance(1e-10 * np.eye(len(space)), np.full((6, len(space)), 1e-9), space)
+    found = spread_covariance(1e-10 * np.eye(len(space)), np.full((6, len(space)), 1e-9), space, space.start())
     for index, one in enumerate(space.parameters):
         least = min(
             dict(LIMITS.systematic).get(one.kind, 0.0), 0.7 * space.doubts()[index]
@@ -68,8 +68,15 @@ def test_numbers_with_several_optima_are_never_more_certain_than_fits_of_known_a
 
 
 def test_no_number_is_less_certain_than_the_users_arm() -> None:
-    found = spread_covariance(FORMULA, scatter(100.0), SPACE)
+    found = spread_covariance(FORMULA, scatter(100.0), SPACE, SPACE.start())
     assert (np.sqrt(np.diag(found)) <= SPACE.doubts()).all()
+
+
+def test_an_arm_file_that_was_far_off_does_not_vouch_for_what_the_logs_leave_open() -> None:
+    x = SPACE.start() + 4.0 * SPACE.doubts() * (np.arange(len(SPACE)) == 2)
+    deviations = np.sqrt(np.diag(spread_covariance(FORMULA, scatter(100.0), SPACE, x))) / SPACE.doubts()
+    assert deviations[2] == pytest.approx(4.0, rel=0.1)
+    assert np.delete(deviations, 2).max() <= 1.0
 
 
 def test_readings_are_those_of_a_noisy_converter_and_a_filter() -> None:

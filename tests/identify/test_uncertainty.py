@@ -27,3 +27,18 @@ def test_a_torque_is_no_surer_than_the_masses_that_it_lifts(recorded: Recorded, 
         assert 0.5 * mass < by_links[f"joint{joint}.alpha"] < 1.5 * mass
         assert by_links[f"joint{joint}.damping"] < 0.5 * mass
     assert np.all(sure.deviations >= plain.deviations)
+
+
+def test_a_gap_is_less_sure_where_play_hides_it(recorded: Recorded, hidden: ArmParameters) -> None:
+    """People read that; plants that are drawn do not have it."""
+    residual = WindowResidual([prepare(recorded.fit, 1)], hidden, range(4), every=8)
+
+    def doubt(*kinds: str) -> float:
+        space = Space.of(hidden, (*MOTOR, *kinds), range(4))
+        sure = uncertainty(residual, space, space.start(), range(4), to_read=True)
+        gap = space.names.index("joint3.gap")
+        return float(np.sqrt(sure.besides[gap, gap]))
+
+    beside_play = IDENTIFICATION_LIMITS.uncertainty.gap_beside_play_rad
+    assert doubt("gap") < 0.5 * beside_play
+    assert doubt("gap", "play") >= beside_play

@@ -78,9 +78,10 @@ def spread_covariance(
     covariance: Floats,
     scatter: Floats,
     space: Space,
+    x: Floats,
     limits: UncertaintyLimits = IDENTIFICATION_LIMITS.uncertainty,
 ) -> Floats:
-    """The covariance of the formula, made to cover the scatter of fits (fits, numbers), group by group."""
+    """The covariance of the formula at `x`, made to cover the scatter of fits (fits, numbers), group by group."""
     if not len(scatter):
         return covariance
     scale = np.ones(len(space))
@@ -96,7 +97,7 @@ def spread_covariance(
     spread = limits.widened * student * (limits.shape_logs * shape + scatter.T @ scatter) / count
     spread += np.diag(_systematic(space, limits) ** 2)
     # No number is less certain than in the user's arm file.
-    known: Floats = np.linalg.inv(np.linalg.inv(spread) + np.diag(space.doubts() ** -2.0))
+    known: Floats = np.linalg.inv(np.linalg.inv(spread) + np.diag(space.doubts_at(x) ** -2.0))
     return (known + known.T) / 2.0
 
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -38,6 +39,14 @@ class Candidate:
     def zero(self) -> Floats:
         found: Floats = self.space.offsets(self.x[None])[0]
         return found
+
+    def with_values(self, values: Mapping[str, float]) -> Candidate:
+        """Return the model with some kinds of quantities at other values, on every joint."""
+        x = self.x.copy()
+        for index, one in enumerate(self.space.parameters):
+            if one.kind in values:
+                x[index] = self.space.kind(index).to_search(values[one.kind])
+        return replace(self, x=x)
 
 
 class WindowsAndLoop:

@@ -48,7 +48,7 @@ def find_default(task: IdentificationRequest) -> FoundModel:
             lambda done: task.report("testing the fit", done),
         )
         sure = sure.widened(
-            spread_covariance(sure.covariance, scatter, best.space, sure.limits), best.space, best.x, joints
+            spread_covariance(sure.covariance, scatter, best.space, best.x, sure.limits), best.space, best.x, joints
         )
     return FoundModel(
         plant=best.plant,

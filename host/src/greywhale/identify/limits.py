@@ -92,6 +92,11 @@ class SearchLimits:
         0.04, "of the held-out misfit", "an order gets a whole fit if a short one leaves no more on top"
     )
     other_optimum: float = limit(0.3, "of a searched number", "numbers that differ by this get a fit of their own")
+    far_doubts: float = limit(
+        1.645,
+        "of the arm file's doubts",
+        "a torque per volt farther off is fitted from nearer by, too, and stays if the log tells it",
+    )
     farthest_log: float = limit(
         2.5, "as a logarithm", "GWO-WOA searches no farther from the arm file's value, to either side"
     )
@@ -173,6 +178,12 @@ class UncertaintyLimits:
         (("damping", 0.0022), ("coulomb", 0.0127), ("play", 9e-4)),
         "standard deviations of the searched numbers",
         "besides, on arms of another engine; for people, no plant is drawn with it",
+        MEASURED_ON_ARMS,
+    )
+    gap_beside_play_rad: float = limit(
+        1.8e-3,
+        "rad, a standard deviation",
+        "the same of half a gap beside play: both hide a turn of the motor, and how teeth strike differs by engine",
         MEASURED_ON_ARMS,
     )
     systematic_alpha: tuple[float, ...] = limit(

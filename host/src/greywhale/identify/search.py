@@ -15,7 +15,7 @@ step 1, and only orders that it lacks are tried.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -26,8 +26,9 @@ from greywhale.identify.candidate import Candidate, WindowsAndLoop
 from greywhale.identify.closed_loop import Loop, LoopResidual
 from greywhale.identify.data import FINE_STEP_S, Prepared
 from greywhale.identify.fit import least_squares_fit
+from greywhale.identify.nearer import cost, far_joints, with_nearer_torque
 from greywhale.identify.soft_teeth import with_soft_teeth
-from greywhale.identify.space import COUPLED, MOTOR, Space
+from greywhale.identify.space import MOTOR, Space
 from greywhale.identify.steps import WindowFit
 from greywhale.identify.windows import WindowResidual
 
@@ -100,6 +101,7 @@ class Search:
         self._fitted = WindowResidual(self.logs, self.arm, self.joints, False)
         self._held = WindowResidual(self.logs, self.arm, self.joints, True)
         self._limits = self._held.limits.search
+        self._far: Candidate | None = None
 
     def run(self) -> None:
         self._begin_part("fitting the motors", 0.0, 1.0)
@@ -113,6 +115,7 @@ class Search:
             for number, turn in enumerate(TURNS):
                 self._consider_rivals(turn, number)
                 self._consider_softer()
+                self._consider_nearer()
             if self.best is before:
                 break
         if self.loops:
@@ -166,17 +169,31 @@ class Search:
             if softer is not self.best:
                 self._consider(softer)
 
+    def _consider_nearer(self) -> None:
+        """Fit joints whose torque per volt is far off from nearer by, too; far off stays what the log tells."""
+        assert self.best is not None
+        if self.best is self._far or not (far := far_joints(self.best, self._limits)):
+            return
+        gears = ({}, *GEARS) if "gap" in self.best.kinds else ({},)
+        tried = [self.best, self._fit_best([with_nearer_torque(self.best, far, gear) for gear in gears])]
+        errors = np.array([cost(one, (self._fitted, self._held)) for one in tried])
+        errors[:, ~np.isin(self.joints, far)] = 0.0  # they stay as they are
+        mixed = self.best.space.mix([one.x for one in tried], errors, self.joints)
+        if not np.array_equal(mixed, self.best.x):
+            self.best = self._measure(replace(self.best, x=mixed))
+        self._far = self.best  # where it is
+
     def _fit_order(self, candidate: Candidate, order: str) -> Candidate:
         """Fit an order's quantities along with the others, those of gears from several starts."""
         if order != "backlash":
             return self._settle(self._fitted, candidate)
-        return self._soften(self._fit_best([candidate, *(_with_values(candidate, gear) for gear in GEARS)]))
+        return self._soften(self._fit_best([candidate, *(candidate.with_values(gear) for gear in GEARS)]))
 
     def _soften(self, stiff: Candidate) -> Candidate:
         """Fit softer teeth, where joints seem to swing on them. A light link that knocks about in its gap looks like
         that, too: what is held out decides.
         """
-        soft = with_soft_teeth(self._fitted, stiff, _with_values(stiff, SWINGING), self.logs)
+        soft = with_soft_teeth(self._fitted, stiff, stiff.with_values(SWINGING), self.logs)
         if soft is None:
             return stiff
         bent = self._fit_best([stiff, soft])
@@ -187,17 +204,14 @@ class Search:
         assert self.best is not None
         self._begin_part("fitting the model from before", 0.0, 1.0, FITS * (len(GEARS) + 3))
         own = replace(begin, x=begin.space.translate(self.best.x, self.best.space))
-        gears = [_with_values(own, gear) for gear in GEARS] if "gap" in begin.kinds else []
+        gears = [own.with_values(gear) for gear in GEARS] if "gap" in begin.kinds else []
         return self._fit_best([begin, own, *gears])
 
     def _fit_best(self, starts: Sequence[Candidate]) -> Candidate:
         """Fit one model from several starts; the best goes on for each group of joints that feel each other."""
         tried = [self._settle(self._fitted, one) for one in starts]
-        errors = []
-        for one in tried:
-            self._fitted.settle(one.plant, one.zero)
-            errors.append(np.mean(np.log1p(self._fitted.misfit(one.plant, one.zero)), axis=0))
-        mixed = self._mix_by_block(tried[0].space, [one.x for one in tried], np.array(errors))
+        errors = np.array([self._fitted.settled_error(one.plant, one.zero) for one in tried])
+        mixed = tried[0].space.mix([one.x for one in tried], errors, self.joints)
         return self._settle(self._fitted, replace(tried[0], x=mixed))
 
     def _was_tried(self, candidate: Candidate) -> bool:
@@ -241,12 +255,7 @@ class Search:
         return self._limits.lossy_drivers if new else self._limits.min_improvement
 
     def _error(self, candidate: Candidate) -> float:
-        """Misfit of the held-out windows: the mean over windows and joints of log(1 + squares over noise).
-
-        The logarithm keeps one motion that is missing in the fitted part from outweighing all other motions.
-        """
-        self._held.settle(candidate.plant, candidate.zero)
-        return float(np.mean(np.log1p(self._held.misfit(candidate.plant, candidate.zero))))
+        return float(np.mean(self._held.settled_error(candidate.plant, candidate.zero)))
 
     def _fit_motors(self) -> Candidate:
         """Motors alone, starting from the user's values."""
@@ -275,17 +284,7 @@ class Search:
         stuck.
         """
         errors = np.array([windows.mse(space.plants(x[None])[0], space.offsets(x[None])[0]) for x in fits])
-        return self._mix_by_block(space, fits, errors[:, list(self.joints)])
-
-    def _mix_by_block(self, space: Space, fits: Sequence[Floats], errors: Floats) -> Floats:
-        """Return the numbers of the best fit for each group of coupled joints, by errors (fits, moving joints)."""
-        mixed = fits[0].copy()
-        for joints in COUPLED:
-            mine = [place for place, joint in enumerate(self.joints) if joint in joints]
-            best = fits[int(np.argmin(errors[:, mine].sum(axis=1)))]
-            mine = [index for index, one in enumerate(space.parameters) if one.joint in joints]
-            mixed[mine] = best[mine]
-        return mixed
+        return space.mix(fits, errors[:, list(self.joints)], self.joints)
 
     def _extend(self, candidate: Candidate, order: str) -> Candidate:
         """Return the model with the quantities of another order added, at their usual start."""
@@ -389,12 +388,3 @@ class Search:
         self.simulations += simulations
         self.simulated += simulations * observed.seconds
         return found
-
-
-def _with_values(candidate: Candidate, values: Mapping[str, float]) -> Candidate:
-    """Return the model with some kinds of quantities at other values, on every joint."""
-    x = candidate.x.copy()
-    for index, one in enumerate(candidate.space.parameters):
-        if one.kind in values:
-            x[index] = candidate.space.kind(index).to_search(values[one.kind])
-    return replace(candidate, x=x)

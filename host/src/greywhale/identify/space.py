@@ -137,6 +137,10 @@ class Space:
         """Return the standard deviations of the searched numbers: how far a value may be from the user's arm."""
         return np.array([self.kind(index).doubt for index in range(len(self))])
 
+    def doubts_at(self, x: Floats) -> Floats:
+        """Return them for who found `x`: an arm file that was off by more than its doubt is doubted that far."""
+        return np.maximum(self.doubts(), np.abs(x - self.start()))
+
     def start(self) -> Floats:
         """The user's arm, or a usual value where the arm gives none (no friction, for example)."""
         return np.array([self.kind(n).to_search(self._known(one)) for n, one in enumerate(self.parameters)])
@@ -170,6 +174,16 @@ class Space:
                 group.append(index)
         columns += [[index] for index, one in enumerate(self.parameters) if one.joint == WHOLE_ARM]
         return tuple(np.array(group, dtype=np.intp) for group in columns)
+
+    def mix(self, fits: Sequence[Floats], errors: Floats, joints: Sequence[int]) -> Floats:
+        """Return the numbers of the best fit for each group of coupled joints, by errors (fits, moving `joints`)."""
+        mixed = fits[0].copy()
+        for coupled in COUPLED:
+            mine = [place for place, joint in enumerate(joints) if joint in coupled]
+            best = fits[int(np.argmin(errors[:, mine].sum(axis=1)))]
+            mine = [index for index, one in enumerate(self.parameters) if one.joint in coupled]
+            mixed[mine] = best[mine]
+        return mixed
 
     def moves(self, joint_of: NDArray[np.intp]) -> NDArray[np.bool_]:
         """True for each searched number that changes numbers of a residual of these joints; (numbers, searched)."""

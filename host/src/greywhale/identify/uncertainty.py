@@ -99,14 +99,23 @@ def uncertainty(
     condition = float(values[-1]) / float(values[0]) if known else LARGEST_CONDITION
     gradients = np.zeros((residual.clusters.max() + 1, len(space)))
     np.add.at(gradients, residual.clusters, jacobian * numbers[0][:, None])
-    covariance = _combine(information, gradients.T @ gradients, np.diag(space.doubts() ** -2.0))
+    covariance = _combine(information, gradients.T @ gradients, np.diag(space.doubts_at(x) ** -2.0))
     besides = np.zeros_like(covariance)
     if to_read:
-        foreign = dict(limits.foreign)
         besides = _covariance_by_links(residual, space, x, numbers[0], jacobian, limits)
-        besides += np.diag([foreign.get(one.kind, 0.0) ** 2 for one in space.parameters])
+        besides += np.diag(_foreign(space, limits) ** 2)
     found = _describe_open(space, x, np.sqrt(np.diag(covariance + besides)), joints, limits)
     return Uncertainty(covariance, besides, condition, tuple(found), limits)
+
+
+def _foreign(space: Space, limits: UncertaintyLimits) -> Floats:
+    """Return the deviations by which fits of arms that no model is like are off besides, in the searched numbers."""
+    foreign, names = dict(limits.foreign), set(space.names)
+    found = np.array([foreign.get(one.kind, 0.0) for one in space.parameters])
+    for index, one in enumerate(space.parameters):
+        if one.kind == "gap" and f"joint{one.joint}.play" in names:
+            found[index] = limits.gap_beside_play_rad
+    return found
 
 
 def _covariance_by_links(

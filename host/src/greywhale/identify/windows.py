@@ -142,6 +142,15 @@ class WindowResidual:
             velocities[:, joint] = starts[count:] * self.limits.windows.speed_doubt_rad_s
         return costs, angles, velocities
 
+    def settled_error(self, plant: Floats, zero: Floats) -> Floats:
+        """Choose the starts for this plant; the mean over windows of log(1 + squares over noise) (joints,) it leaves.
+
+        The logarithm keeps one motion that is missing in the fitted part from outweighing all other motions.
+        """
+        self.settle(plant, zero)
+        errors: Floats = np.mean(np.log1p(self.misfit(plant, zero)), axis=0)
+        return errors
+
     def misfit(self, plant: Floats, zero: Floats) -> Floats:
         """Squares per reading over the noise's (windows, joints) of one plant, computed as in `mse`."""
         parts = [
