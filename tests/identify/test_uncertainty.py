@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
+import pytest
 
 from greywhale.arm import ArmParameters
 from greywhale.arm.parameters import PITCH_JOINTS
@@ -31,14 +34,14 @@ def test_a_torque_is_no_surer_than_the_masses_that_it_lifts(recorded: Recorded, 
 
 def test_a_gap_is_less_sure_where_play_hides_it(recorded: Recorded, hidden: ArmParameters) -> None:
     """People read that; plants that are drawn do not have it."""
-    residual = WindowResidual([prepare(recorded.fit, 1)], hidden, range(4), every=8)
 
-    def doubt(*kinds: str) -> float:
-        space = Space.of(hidden, (*MOTOR, *kinds), range(4))
-        sure = uncertainty(residual, space, space.start(), range(4), to_read=True)
+    def variance(beside_play: float, *kinds: str) -> float:
+        sure = replace(IDENTIFICATION_LIMITS.uncertainty, gap_beside_play_rad=beside_play)
+        log = prepare(recorded.fit, 1, replace(IDENTIFICATION_LIMITS, uncertainty=sure))
+        space = Space.of(hidden, kinds, (3,))
+        found = uncertainty(WindowResidual([log], hidden, (3,), every=8), space, space.start(), (3,), to_read=True)
         gap = space.names.index("joint3.gap")
-        return float(np.sqrt(sure.besides[gap, gap]))
+        return float(found.besides[gap, gap])
 
-    beside_play = IDENTIFICATION_LIMITS.uncertainty.gap_beside_play_rad
-    assert doubt("gap") < 0.5 * beside_play
-    assert doubt("gap", "play") >= beside_play
+    assert variance(0.01, "gap", "play") == pytest.approx(variance(0.0, "gap", "play") + 1e-4)
+    assert variance(0.01, "gap") == variance(0.0, "gap")
