@@ -53,7 +53,7 @@ def require_between(what: str, value: float, unit: str, ends: tuple[float, float
     """Refuse a number that is out of its range, or none, as bad usage."""
     if not ends[0] <= value <= ends[1]:
         of_unit = f" {unit}" if unit else ""
-        raise BadUsage(f"{what} is {value:g}{of_unit}; it must be {ends[0]:g} to {ends[1]:g}.")
+        raise BadUsage(f"{what} is {value:g}{of_unit}; it must be {ends[0]:g} to {ends[1]:g}{of_unit}.")
 
 
 def counted(number: int, thing: str) -> str:

@@ -40,13 +40,12 @@ def with_nearer_torque(found: Candidate, joints: Sequence[int], gear: Mapping[st
     return replace(found, x=np.where(here, np.where(usual, found.space.start(), other), found.x))
 
 
-def cost(found: Candidate, windows: Sequence[WindowResidual]) -> Floats:
-    """By moving joint, minus the logarithm of how likely a model is by the logs and by the arm file, save a constant.
-
-    A window counts as one observation: a model's mistakes last for many readings in a row.
+def cost(found: Candidate, held_out: WindowResidual) -> Floats:
+    """By moving joint, minus the logarithm of how likely a model is by what is held out and by the arm file, save a
+    constant. A window counts as one observation: a model's mistakes last for many readings in a row.
     """
-    missed = np.sum([one.windows * one.settled_error(found.plant, found.zero) for one in windows], axis=0)
+    missed = held_out.windows * held_out.settled_error(found.plant, found.zero)
     away = ((found.x - found.space.start()) / found.space.doubts()) ** 2
     doubted = np.bincount([one.joint for one in found.space.parameters], away, WHOLE_ARM + 1)
-    costs: Floats = missed + 0.5 * doubted[windows[0].joints]
+    costs: Floats = missed + 0.5 * doubted[held_out.joints]
     return costs

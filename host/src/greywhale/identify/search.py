@@ -176,7 +176,7 @@ class Search:
             return
         gears = ({}, *GEARS) if "gap" in self.best.kinds else ({},)
         tried = [self.best, self._fit_best([with_nearer_torque(self.best, far, gear) for gear in gears])]
-        errors = np.array([cost(one, (self._fitted, self._held)) for one in tried])
+        errors = np.array([cost(one, self._held) for one in tried])
         errors[:, ~np.isin(self.joints, far)] = 0.0  # they stay as they are
         mixed = self.best.space.mix([one.x for one in tried], errors, self.joints)
         if not np.array_equal(mixed, self.best.x):
@@ -357,8 +357,9 @@ class Search:
         told = np.array([parameter.kind != "alpha" for parameter in candidate.space.parameters])
         if np.max(np.abs(other - candidate.x)[told]) < self._limits.other_optimum:
             return candidate
-        tried = [self._settle(windows, replace(candidate, x=x)).x for x in (candidate.x, other)]
-        return replace(candidate, x=self._mix_blocks(windows, candidate.space, tried))
+        tried = [self._settle(windows, replace(candidate, x=x)) for x in (candidate.x, other)]
+        costs = np.array([cost(one, windows) for one in tried])
+        return replace(candidate, x=candidate.space.mix([one.x for one in tried], costs, self.joints))
 
     def _begin_part(self, what: str, done: float, until: float, fits: int = 1) -> None:
         """Progress a part of the search; about so many fits take its share from `done` to `until`."""
