@@ -79,6 +79,8 @@ def run_line(line: str) -> str:
         return _look_at_make(words[1:])
     if words[:2] == ["pip", "install"]:
         return "" if words[2:] == ["greywhale"] else "pip installs what is not ours"
+    if words[:1] in (["git"], ["mkdir"]):
+        return ""  # gets what others published
     if words[:2] == ["python", "-m"]:
         return "" if importlib.util.find_spec(words[2]) else f"there is no module {words[2]}"
     if words[:1] != ["greywhale"]:

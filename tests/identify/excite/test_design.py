@@ -88,8 +88,8 @@ def test_an_arm_that_would_lag_is_moved_less() -> None:
 def test_what_makes_no_sense_is_refused() -> None:
     arm = load_arm("white_box")
     for options, words in (
-        ({"seconds": 2.0}, "2 s long"),
-        ({"seconds": 1e4}, "10000 s long"),
+        ({"seconds": 2.0}, "length is 2 s"),
+        ({"seconds": 1e4}, "length is 10000 s"),
         ({"budget": 0}, "budget"),
     ):
         with pytest.raises(UserError, match=words) as refused:
