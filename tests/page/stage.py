@@ -69,6 +69,8 @@ LEASED_S = 0.15
 # And after the point of a lead: until a pulse of a motor has ended, and what it moved is at rest. Before the point
 # it lives for the answers alone, for the lease of a pulse is short.
 PULSE_S = 0.5
+# All that it lives before the point, however late a starved page sends it and however often others ask meanwhile.
+BEFORE_POINT_S = 0.05
 LEASES = {EnableRequest.TYPE, LeadRequest.TYPE, RenewRequest.TYPE}
 ENDED = UserError("the bench has ended.")
 # A page waits half a second for an answer, four times. Here the board answers in its own time, on any machine.
@@ -107,6 +109,7 @@ class Stage:
         self.still = False  # only a stop lets the board live
         self._until_s = 0.0
         self._now_s = 0.0
+        self._point_by_s = 0.0
         self._ending = False
         self._commands: list[tuple[str, Future[dict[str, Any]]]] = []
 
@@ -128,7 +131,9 @@ class Stage:
     def let_live(self, seconds: float) -> float:
         """Give the board time from now on; when it ends."""
         with self._ready:
-            end_s = self._now_s + (ANSWER_S if self.relay.awaits_point else seconds)
+            end_s = self._now_s + seconds
+            if self.relay.awaits_point:
+                end_s = min(self._now_s + ANSWER_S, self._point_by_s)
             self._until_s = max(self._until_s, end_s)
             self._ready.notify_all()
         return end_s
@@ -139,8 +144,9 @@ class Stage:
             assert self._ready.wait_for(condition, PATIENCE_MS / 1000)
 
     def let_live_no_longer(self, seconds: float) -> None:
-        """Take back what time the board was given beyond this."""
+        """Take back what time the board was given beyond this; a point that is awaited comes within `BEFORE_POINT_S`."""
         with self._ready:
+            self._point_by_s = self._now_s + BEFORE_POINT_S
             self._until_s = min(self._until_s, self._now_s + seconds)
 
     def command(self, text: str) -> dict[str, Any]:
