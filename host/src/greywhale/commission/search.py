@@ -28,7 +28,7 @@ from greywhale.base.types import Controllers, Flags, Floats, NotedProgress
 from greywhale.commission.evidence import failing_plants
 from greywhale.commission.foresee import Foresight
 from greywhale.commission.judge import LED, RESTLESS, Limits
-from greywhale.commission.limits import SearchLimits
+from greywhale.commission.limits import CommissioningLimits, SearchLimits
 from greywhale.commission.measures import Measures, measure
 from greywhale.commission.trials import Trial, Trials
 from greywhale.fuzzy.settings import GAIN_UNIT
@@ -79,7 +79,7 @@ class CheckOnModel:
         judging = trials.judging.tuning
         margins_on = partial(Margins, arm, table, threads=threads, searching=True, seed=seed, judging=judging)
         margins = margins_on(plants)
-        plants = np.vstack([plants[:1], _worsen(plants[1:], wanted)])
+        plants = np.vstack([plants[:1], worsen(plants[1:], trials.judging)])
         led = LedModel(arm, table, before.traces)
         (traces,) = led.run(running, plants[:1])
         known = measure(traces, trials.check, table.supply_v)
@@ -250,8 +250,14 @@ def _with_sets_of(before: Controllers, tuned: Controllers, least_ki: float) -> C
     return rows
 
 
-def _worsen(plant: Floats, limits: SearchLimits) -> Floats:
-    """An arm on which a controller comes to rest less easily."""
-    worse = with_gain(plant, limits.worse_gain)
-    worse[:, columns("pot_lag")] += limits.worse_lag_s
+def worsen(plant: Floats, judging: CommissioningLimits) -> Floats:
+    """Return arms (n, columns) on which a controller comes to rest less easily. Gaps beside play are wider by what
+    estimates are off on foreign arms: at the edge of a limit cycle a set passes the check, and hunts after the next
+    quick move.
+    """
+    worse = with_gain(plant, judging.search.worse_gain)
+    worse[:, columns("pot_lag")] += judging.search.worse_lag_s
+    wider = judging.tuning.identification.uncertainty.gap_beside_play_rad
+    beside = (worse[:, columns("stiffness")] > 0.0) & (worse[:, columns("pot_play")] > 0.0)
+    worse[:, columns("half_gap")] += np.where(beside, wider, 0.0)
     return worse
