@@ -49,7 +49,6 @@ HAS_BENCH_PORTS = sys.platform == "linux"
 
 # How a file is opened: as it is on the disk, and not where a link leads.
 _PLAIN = getattr(os, "O_BINARY", 0) | getattr(os, "O_NOFOLLOW", 0)
-_FAR_BYTE = 1 << 40  # Windows keeps others from reading what is locked, and no file of ours is so long
 PSEUDO_TERMINALS = range(136, 144)  # major numbers of devices
 _CFLAG, _SPEED, _CHARACTERS = 2, 5, 6  # places in what termios returns
 
@@ -68,7 +67,7 @@ def lock(descriptor: int, wait: bool = False) -> None:
     """
     if sys.platform == "win32":
         place = os.lseek(descriptor, 0, os.SEEK_CUR)
-        os.lseek(descriptor, _FAR_BYTE, os.SEEK_SET)
+        os.lseek(descriptor, 1 << 40, os.SEEK_SET)  # others cannot read what is locked; no file is so long
         try:
             msvcrt.locking(descriptor, msvcrt.LK_LOCK if wait else msvcrt.LK_NBLCK, 1)
         except PermissionError as error:

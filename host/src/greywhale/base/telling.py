@@ -12,7 +12,6 @@ from typing import Any, ClassVar
 from greywhale.base.errors import printable
 
 LINE_COLUMNS = 80  # of a terminal; a remark behind a row stays within, where it can
-REMARK_GAP = 3  # columns between a row and its remark
 BULLET = "- "
 BESIDE = "-> "  # before what stands below a row
 
@@ -80,7 +79,7 @@ class Table:
         for row in self.rows:
             line = self._line(row.cells, places)
             if row.remark:
-                gap = max(1, min(REMARK_GAP, LINE_COLUMNS - len(line) - len(row.remark)))
+                gap = max(1, min(3, LINE_COLUMNS - len(line) - len(row.remark)))
                 line += " " * gap + row.remark
             yield line, hang
             if row.below:

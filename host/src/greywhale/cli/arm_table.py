@@ -12,8 +12,6 @@ from greywhale.arm.summary import JointSummary
 from greywhale.base.telling import Column, Part, Row, Sentences, Table
 from greywhale.protocol.table import ParameterTable
 
-MUCH_TO_HOLD_SHARE = 0.6  # of stall_volts: the rest is for starting
-
 
 class JointFacts(TypedDict):
     joint: int
@@ -68,7 +66,7 @@ def advice(found: Summary) -> str:
     """Advice for a board as shipped if the arm's motors have much to hold; "" where it needs nothing."""
     hold = max(one.hold_v for one in found.joints)
     shipped = ParameterTable.defaults().physical("stall_volts")
-    if hold <= MUCH_TO_HOLD_SHARE * shipped or any(one.share >= 1.0 for one in found.joints):
+    if hold <= 0.6 * shipped or any(one.share >= 1.0 for one in found.joints):  # the rest is for starting
         return ""
     return (
         f"a joint needs {hold:.1f} V to hold still, and the board holds a joint back that has more than stall_volts "

@@ -29,7 +29,6 @@ from greywhale.protocol.firmware import JOINTS
 from greywhale.protocol.joints import parse, unused
 from greywhale.protocol.ports import choose_port
 
-TRACK_DEG = (180.0, 450.0)  # of any potentiometer of one turn, and a little beyond
 FARTHEST_DEG = 359.0  # of a pose
 _NAME = Column(width=11, left=True)
 _DIRECTIONS = {True: "as the joint", False: "reversed"}
@@ -93,7 +92,7 @@ def command(
     if history:
         click.get_current_context().invoke(calibrations.command, back=None, port=port, as_json=as_json)
         return
-    require_between("--track", track, "degrees", TRACK_DEG)
+    require_between("--track", track, "degrees", (180.0, 450.0))  # any potentiometer of one turn, and a little beyond
     joints = parse(in_use)
     poses = Options(
         _angles("--first", first),

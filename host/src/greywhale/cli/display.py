@@ -21,10 +21,6 @@ from rich.text import Text
 from greywhale.base.errors import printable
 
 LINE_EVERY_S = 30.0  # between two lines about one step
-LOOK_EVERY_S = 1.0  # whether a line is due
-FRAMES_HZ = 4.0  # of a terminal's bar
-LONGEST_BAR_COLUMNS = 24
-BESIDE_BAR_COLUMNS = 33  # for the share and the times
 Clock = Callable[[], float]
 
 
@@ -80,7 +76,7 @@ class Frame:
         if step is None:
             return
         yield Text(step.what)
-        length = max(1, min(LONGEST_BAR_COLUMNS, options.max_width - BESIDE_BAR_COLUMNS))
+        length = max(1, min(24, options.max_width - 33))  # the share and the times stand beside it
         state = Text(step.state(self._running.clock()), no_wrap=True, overflow="ellipsis")
         row = Table.grid(padding=(0, 1))
         row.add_row(ProgressBar(total=1.0, completed=step.fraction, width=length), state)
@@ -120,11 +116,11 @@ def shown(begins: bool) -> Iterator[Callable[..., object]]:
     console = Console(stderr=True)
     running = Running()
     if sys.stderr.isatty() and console.is_terminal and not console.is_dumb_terminal:
-        with Live(Frame(running), console=console, refresh_per_second=FRAMES_HZ, transient=True):
+        with Live(Frame(running), console=console, refresh_per_second=4.0, transient=True):
             yield running
         return
     lines = Lines(_say, running, begins)
-    with repeated(lines.look, LOOK_EVERY_S):
+    with repeated(lines.look, 1.0):
         yield lines
 
 

@@ -18,9 +18,6 @@ from greywhale.files.exchange.recording import ExportOptions, JointColumns, Reco
 from greywhale.files.log import Log, read_log
 from greywhale.files.outputs import require_new, require_new_folder
 
-MOST_FPS = 1000  # a frame a sample
-DRAWS = 2000  # plants of a model, of which the file says the intervals
-
 
 class ExportAnswer(TypedDict):
     written: list[str]  # files
@@ -48,7 +45,7 @@ _LINES = [f"{name}, {one.does.rstrip('.')}" for name, one in FORMATS.items()]
 @option("--joint", type=click.IntRange(0, 3), help="Of a controller: this joint alone, into OUT. --to bam needs it.")
 @option("--mass", type=float, help="With --to bam: the pendulum's mass, kg.")
 @option("--length", type=float, help="With --to bam: its length, m.")
-@option("--fps", type=click.IntRange(1, MOST_FPS), help="With --to lerobot: frames a second.  [default: 30]")
+@option("--fps", type=click.IntRange(1, 1000), help="With --to lerobot: frames a second.  [default: 30]")
 @option("--task", metavar="TEXT", help="With --to lerobot: the task in words, for logs that name none or another.")
 @option("--model", shell_complete=completion.arms, help="With --to: add the torque from outside, by this model.toml.")
 @overwrite_option
@@ -150,7 +147,7 @@ def _export_arm(urdf: str | None, mjcf: str | None, gears: bool, out: Path, over
     if "covariance" in (arm.identification or {}):
         from greywhale.identify import sampled_plants
 
-        drawn = sampled_plants(arm, DRAWS)
+        drawn = sampled_plants(arm, 2000)  # the file says their intervals
     text = export.urdf(arm, drawn) if urdf is not None else export.mjcf(arm, drawn, gears)
     write_text(out, text)
     return out

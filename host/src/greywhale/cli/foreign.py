@@ -18,8 +18,6 @@ from greywhale.base.errors import UserError, cut
 GROUP = "greywhale.verbs"
 # The distributions of this project that bring verbs: whoever lacks one learns what to install.
 BRINGS = {"compare": "greywhale-paper", "reproduce": "greywhale-paper"}
-# Of a reason that a stranger's module gives: as much as leaves the sentence readable.
-LONGEST_REASON = 300
 logger = logging.getLogger(__name__)
 
 
@@ -91,7 +89,7 @@ def _verb(entry: EntryPoint) -> Verb:
 
 def _broken(entry: EntryPoint, error: BaseException) -> UserError:
     who = _distribution(entry)
-    reason = cut(" ".join(f"{type(error).__name__}: {error}".split()), LONGEST_REASON)
+    reason = cut(" ".join(f"{type(error).__name__}: {error}".split()), 300)  # so that the sentence stays readable
     which = f"{entry.name}, a verb of the distribution {who},"
     return UserError(f"{which} cannot be loaded ({reason}); install {who} again, or remove it.")
 

@@ -17,9 +17,6 @@ from greywhale.base.telling import Telling
 from greywhale.cli import entry, output
 from greywhale.protocol.lent_line import lend
 
-# A step is reported again when this share more of it is done, so a step has 500 reports at most.
-LEAST_STEP_SHARE = 0.002
-
 
 class Reporter:
     """A `Watcher` that writes what a verb reports, but not each of thousands of samples."""
@@ -30,7 +27,7 @@ class Reporter:
 
     def __call__(self, what: str, fraction: float, note: str = "") -> None:
         before = self._last_report
-        if (what, note) == (before[0], before[2]) and abs(fraction - before[1]) < LEAST_STEP_SHARE:
+        if (what, note) == (before[0], before[2]) and abs(fraction - before[1]) < 0.002:  # 500 reports at most
             return
         self._last_report = (what, fraction, note)
         self._tell(progress={"text": what, "done": fraction, "total": 1.0, "note": note})

@@ -52,8 +52,6 @@ USUAL_RECORDING_S = 10.0  # without --seconds
 _OF_LED = {"arm_file": "--arm", "ranges": "--range", "save_motion": "--save-motion"}
 _OF_EPISODES = {"task": "--task"}
 _OF_EXCITE = {"seed": "--seed", "budget": "--budget"}
-MOST_EPISODES = 1000  # of a call
-MOST_VISITS = 100  # more would take longer than an hour
 
 
 class RecordAnswer(OnPort, RecordingFacts):
@@ -103,7 +101,7 @@ class RecordExciteAnswer(OnPort, LedRecordingFacts, Saved):
 @option(
     "--episodes",
     metavar="N",
-    type=click.IntRange(1, MOST_EPISODES),
+    type=click.IntRange(1, 1000),
     help="Record N logs into a folder, --out or else episodes, begun and ended by keys; without a terminal each takes "
     "--seconds.",
 )
@@ -112,7 +110,7 @@ class RecordExciteAnswer(OnPort, LedRecordingFacts, Saved):
 @option(
     "--poses",
     metavar="N",
-    type=click.IntRange(2, MOST_VISITS),
+    type=click.IntRange(2, 100),  # more would take longer than an hour
     help="Turn the motors on and lead the arm N times to each of five poses from either side, for `evaluate "
     "--repeatability`; ISO 9283 has 30, which takes some 11 minutes.",
 )

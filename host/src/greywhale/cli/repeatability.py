@@ -13,7 +13,6 @@ from greywhale.files.log import Log
 from greywhale.measure.limits import REPEATABILITY_LIMITS
 from greywhale.measure.repeatability import Repeatability, RepeatabilityFacts, hidden_play, repeatability
 
-_MILLI = 1e3  # rad and m stand in a table in mrad and mm
 _COLUMNS = (
     Column("", width=13, left=True),
     Column("visits\nfrom a side", width=11),
@@ -109,4 +108,4 @@ def _name(joint: int | None) -> str:
 
 
 def _size(value: float | None) -> str:
-    return "n/a" if value is None else f"{_MILLI * value:.2f}"
+    return "n/a" if value is None else f"{1e3 * value:.2f}"  # mrad and mm

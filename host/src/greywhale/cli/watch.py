@@ -20,6 +20,7 @@ from rich.live import Live
 from rich.text import Text
 
 from greywhale.arm import ArmParameters
+from greywhale.base.telling import LINE_COLUMNS
 from greywhale.board.device import Device
 from greywhale.board.pots import FULL_SCALE, PotReadings, counts_of, pots_there
 from greywhale.board.refusal import fault_text
@@ -32,9 +33,7 @@ from greywhale.protocol.joints import ALL, Joints
 from greywhale.protocol.table import ParameterTable
 
 SAMPLE_EVERY_TICKS = 50  # 20 samples a second
-WIDTH_COLUMNS = 80  # of the smallest usual terminal
 MOST_COMPLAINTS = 2  # shown; the others are counted
-_REFRESH_S = 0.1  # of the table, by this machine's clock
 _LINE_TICKS = 1000  # between two lines, by the board's
 _GROUPS = ("leader", "follower", "error", "voltage")
 TORQUES = [f"{group}_{joint}" for group in ("torque", "torque_known_to", "contact") for joint in range(JOINTS)]
@@ -114,7 +113,7 @@ def as_table(look: Look) -> str:
     board = f"{look.port}, state {look.sample.state.key}, {look.sample.tick / 1000:.1f} s since its start{lost}"
     outside, unit = ("", "") if look.outside is None else ("outside", "N m")
     lines = [
-        *textwrap.wrap(board, WIDTH_COLUMNS),
+        *textwrap.wrap(board, LINE_COLUMNS),
         "",
         f"{'':8}{'leader':>17}{'follower':>17}{'error':>10}{'voltage':>10}{outside:>18}".rstrip(),
         f"{'':8}{'rad':>9}{'counts':>8}{'rad':>9}{'counts':>8}{'rad':>10}{'V':>10}{unit:>18}".rstrip(),
@@ -133,7 +132,7 @@ def as_table(look: Look) -> str:
     if len(look.complaints) > MOST_COMPLAINTS:
         sentences.append(f"{len(look.complaints) - MOST_COMPLAINTS} more potentiometers are at a rail.")
     sentences.append("Ctrl-C ends this.")
-    return "\n".join([*lines, "", *(line for sentence in sentences for line in textwrap.wrap(sentence, WIDTH_COLUMNS))])
+    return "\n".join([*lines, "", *(line for sentence in sentences for line in textwrap.wrap(sentence, LINE_COLUMNS))])
 
 
 def _outside(look: Look, joint: int) -> str:
@@ -161,7 +160,7 @@ def _paced(found: Iterable[Look]) -> Iterator[Look]:
     for look in found:
         now = time.monotonic()
         if now >= next_s:
-            next_s = now + _REFRESH_S
+            next_s = now + 0.1
             yield look
 
 

@@ -6,8 +6,8 @@ import os
 import re
 from typing import TextIO
 
-WIDEST_COLUMNS = 120  # longer lines are hard to read
-USUAL_COLUMNS = 80  # of a terminal that does not say
+from greywhale.base.telling import LINE_COLUMNS
+
 # A word with the gap before it. A `command` is one word with its spaces, so that it can be copied.
 _WORD = re.compile(r"(\s*)((?:`[^`]*`|\S)+)")
 _PLAIN_WORD = re.compile(r"(\s*)(\S+)")
@@ -24,9 +24,9 @@ def columns(stream: TextIO) -> int | None:
     if not stream.isatty():
         return None
     try:
-        return os.get_terminal_size(stream.fileno()).columns or USUAL_COLUMNS
+        return os.get_terminal_size(stream.fileno()).columns or LINE_COLUMNS
     except (OSError, ValueError):
-        return USUAL_COLUMNS
+        return LINE_COLUMNS
 
 
 def wrap(text: str, width: int, hang: int = 0) -> str:
@@ -37,7 +37,7 @@ def wrap(text: str, width: int, hang: int = 0) -> str:
 def _broken(line: str, width: int, hang: int) -> list[str]:
     if len(line) <= width:
         return [line]
-    most = min(width, WIDEST_COLUMNS)
+    most = min(width, 120)  # longer lines are hard to read
     indent = " " * max(hang, len(line) - len(line.lstrip()))
     done, now = [], ""
     for gap, word in _words(line, most - len(indent)):

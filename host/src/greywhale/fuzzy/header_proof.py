@@ -21,7 +21,6 @@ from greywhale.fuzzy.table_law import NO_RULE, Axis, TableLaw
 from greywhale.fuzzy.table_twin import END, FULL, IntegerLaw, Ints
 
 PLACES = np.arange(-END, END + 1)
-EVEN = 401  # places of the dense grid on each axis, beside the corners
 BEST, ROUNDS, NEAR = 16, 24, 256  # of the search from the worst places on
 # Errors of a shape's area and moment, in units: two and three roundings of coefficients, each product one.
 AREA_ERROR, MOMENT_ERROR = 3.0, 4.5
@@ -146,7 +145,7 @@ def _grid(axis: Axis, member: Ints) -> Ints:
     crossings = np.flatnonzero(np.diff(member.argmax(axis=0))) - END
     bends = np.array([*corners, *crossings.tolist(), 0])
     near = (bends[:, None] + np.arange(-2, 3)).ravel()
-    return np.unique(np.clip(np.concatenate([near, np.linspace(-END, END, EVEN).round().astype(int)]), -END, END))
+    return np.unique(np.clip(np.concatenate([near, np.linspace(-END, END, 401).round().astype(int)]), -END, END))
 
 
 def _search(law: TableLaw, numbers: IntegerLaw) -> tuple[float, tuple[int, int], int]:

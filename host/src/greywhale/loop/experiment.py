@@ -28,8 +28,6 @@ from greywhale.protocol.firmware import JOINTS, TICK_S
 from greywhale.protocol.joints import unused
 from greywhale.protocol.table import ParameterTable
 
-STEPS_PER_TICK = (1, 2, 4)
-
 
 class Experiment:
     """Leader, sensors and board settings, shared by all candidates; `run` simulates any number of them.
@@ -103,7 +101,7 @@ class Experiment:
         not depend on their number. `every` > 0 keeps angles and duties of every so many ticks. `steps_per_tick` 1, 2 or
         4 trades speed for accuracy: docs/closed_loop.md has the errors.
         """
-        if steps_per_tick not in STEPS_PER_TICK:
+        if steps_per_tick not in (1, 2, 4):
             raise UserError(f"steps_per_tick is {steps_per_tick}, but it must be 1, 2 or 4.")
         return self._run(controllers, plants, every, threads, steps_per_tick, False)
 

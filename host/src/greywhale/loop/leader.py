@@ -7,10 +7,10 @@ import numpy as np
 from greywhale.base.errors import UserError
 from greywhale.base.types import Floats
 from greywhale.files.trajectory import Trajectory
+from greywhale.protocol.firmware import TICK_S
 
-SLICE_S = 250e-6
 SLICES_PER_TICK = 4
-UNEVEN_SHARE = 0.05  # a row may be early or late by this share of the usual spacing
+SLICE_S = TICK_S / SLICES_PER_TICK
 
 
 def leader_slices(motion: Trajectory, wait_s: float, resample: bool = False) -> Floats:
@@ -42,7 +42,7 @@ def straight_slices(rows: Floats, apart: int, wait_s: float) -> Floats:
 def _require_even(motion: Trajectory) -> None:
     spacing = np.diff(motion.time_s)
     usual = float(np.median(spacing))
-    off = np.flatnonzero(np.abs(spacing - usual) > UNEVEN_SHARE * usual)
+    off = np.flatnonzero(np.abs(spacing - usual) > 0.05 * usual)  # rows may be a little early or late
     if off.size:
         row = int(off[0])
         kind = "a gap" if spacing[row] > 1.5 * usual else "uneven time"

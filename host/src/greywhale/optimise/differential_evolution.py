@@ -23,7 +23,6 @@ from greywhale.optimise.optimiser import PACK, Optimiser
 # Finite, because scipy evaluates a first pack of infinities a second time; far enough from the limit that sums stay
 # finite.
 WORST_COST = 1e300
-ENDLESS_GENERATIONS = 2**31 - 1  # the budget ends the run before
 
 
 class _Closed(BaseException):
@@ -95,7 +94,7 @@ class DifferentialEvolution(Optimiser):
             "updating": "deferred",
             "vectorized": True,
             "polish": False,
-            "maxiter": ENDLESS_GENERATIONS,
+            "maxiter": 2**31 - 1,  # the budget ends the run before
             # Never converged: a negative tolerance is below every spread.
             "tol": 0.0,
             "atol": -1.0,

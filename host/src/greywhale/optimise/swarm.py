@@ -15,7 +15,6 @@ from greywhale.optimise.optimiser import Optimiser
 
 INERTIA_WEIGHT = 0.7298
 ATTRACTION = 1.49618
-FASTEST_BOX_SHARE = 0.5  # of the box in a move
 
 
 def steer(
@@ -39,7 +38,7 @@ class Swarm(Optimiser):
         if not len(self._pack):
             return self._first_pack()
         r1, r2 = self._source.random(self._pack.shape), self._source.random(self._pack.shape)
-        limit = FASTEST_BOX_SHARE * self.box.width
+        limit = 0.5 * self.box.width
         self._velocity = steer(self._velocity, self._pack, self._own_best, self.best.x, limit, r1, r2)
         moved = self._pack + self._velocity
         inside = self.box.clip(moved)

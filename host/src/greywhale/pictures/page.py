@@ -34,10 +34,9 @@ from greywhale.pictures.plotting import (
     plt,
 )
 
-INCH_CM = 2.54
-WIDE = 17.0 / INCH_CM
+WIDE = 17.0 / 2.54  # inches
 DPI, DOCUMENT_DPI = 300, 200  # of files, and of pictures inside a document
-LETTERS, SMALL, HEADLINE = 8.0, 7.0, 9.5  # points
+LETTERS, SMALL = 8.0, 7.0  # points
 JOINTS = tuple(f"Joint {joint}, {name}" for joint, name in enumerate(JOINT_NAMES))
 _SETTINGS: dict[Any, Any] = {
     "font.size": LETTERS,
@@ -46,7 +45,7 @@ _SETTINGS: dict[Any, Any] = {
     "xtick.labelsize": SMALL,
     "ytick.labelsize": SMALL,
     "legend.fontsize": LETTERS,
-    "figure.titlesize": HEADLINE,
+    "figure.titlesize": 9.5,
     "figure.titleweight": "bold",
     "axes.grid": True,
     "grid.alpha": 0.3,
@@ -54,12 +53,9 @@ _SETTINGS: dict[Any, Any] = {
     "axes.linewidth": 0.6,
     "svg.hashsalt": "greywhale",
 }
-# Shares of the panel's width: what is cut off closer together has one mark, what is longer has several.
-_MARKS_APART, _LONG = 0.02, 0.08
 _MARK = 3.5  # points
 # Jumps would hide the error that is left after them (rad).
 LARGEST_ERROR = 0.2
-_DECADES = 3.0  # from here on a logarithmic axis has powers of ten alone
 
 
 @contextlib.contextmanager
@@ -138,7 +134,7 @@ def _peaks(x: Floats, y: Floats, most: float, width: float) -> list[float]:
     stretches: list[list[int]] = []
     for at in beyond:
         here = stretches[-1] if stretches else []
-        if here and x[at] - x[here[-1]] <= _MARKS_APART * width and x[at] - x[here[0]] <= _LONG * width:
+        if here and x[at] - x[here[-1]] <= 0.02 * width and x[at] - x[here[0]] <= 0.08 * width:
             here.append(int(at))
         else:
             stretches.append([int(at)])
@@ -159,7 +155,7 @@ def make_logarithmic(axes: Axes) -> None:
     """A logarithmic y axis for what is drawn in the panel, with plain numbers."""
     axes.set_yscale("log")
     low, high = axes.get_ylim()
-    few = np.log10(high / low) < _DECADES
+    few = np.log10(high / low) < 3.0  # from here on such an axis has powers of ten alone
     axes.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0) if few else (1.0,)))
     axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     axes.yaxis.set_minor_formatter(NullFormatter())

@@ -12,10 +12,9 @@ from greywhale.pictures import looks
 from greywhale.pictures.page import JOINTS, WIDE, headline, leave, legend_below, save, style
 from greywhale.pictures.plotting import Axes, Figure, Line2D, plt
 
-_HEIGHT, _MILLI = 1.7, 1e3  # of a panel in inches; mrad of a rad
+_HEIGHT = 1.7  # of a panel in inches
 _MARKS = {-1: "^", 0: "o", 1: "v"}  # it came from below, from where it was, from above
 _WORDS = {-1: "from below", 0: "without a move", 1: "from above"}
-_SIZE, _ROOM = 2.5, 0.6  # of a mark in points; of the room between two poses that marks take
 
 
 def draw_repeatability(path: str | Path, measured: Mapping[str, Repeatability]) -> None:
@@ -62,9 +61,9 @@ def _draw(axes: Axes, measured: Repeatability, joint: int, colour: str, share: f
     axes.set_xticks(range(1, len(measured.poses) + 1))
     for number, pose in enumerate(measured.poses, 1):
         for approach in pose.joints[joint].approaches if joint in pose.joints else ():
-            sizes = _MILLI * approach.deviations[:, 0]
-            axes.plot([number + _ROOM * (share - 0.5)] * len(sizes), sizes, **_look(colour, _MARKS[approach.sides[0]]))
+            sizes = 1e3 * approach.deviations[:, 0]  # mrad
+            axes.plot([number + 0.6 * (share - 0.5)] * len(sizes), sizes, **_look(colour, _MARKS[approach.sides[0]]))
 
 
 def _look(colour: str, mark: str) -> dict[str, Any]:
-    return {"color": colour, "marker": mark, "markersize": _SIZE, "linestyle": "none", "fillstyle": "none"}
+    return {"color": colour, "marker": mark, "markersize": 2.5, "linestyle": "none", "fillstyle": "none"}

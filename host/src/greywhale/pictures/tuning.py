@@ -31,10 +31,6 @@ from greywhale.protocol.joints import ALL, Joints
 _SET_NAMES = (("NE", "ZE", "PE"), ("NCE", "ZCE", "PCE"))
 _INPUTS = {"error": "$K_p\\,e$", "change of error": "$K_d\\,\\Delta e$"}
 _UNCHANGED = "unchanged by the tuning"
-# A close-up shows so much before and after the largest jump of the leader.
-_CLOSE_BEFORE_S, _CLOSE_AFTER_S = 0.05, 0.45
-_JUMP_S = 0.1
-_WIDE_COSTS = 20.0  # from here on a logarithmic axis
 _RESPONSES = (looks.BEFORE, looks.AFTER, looks.FLOOR)
 
 
@@ -154,10 +150,10 @@ def _draw_angles(axes: Axes, time_s: Floats, leader: Floats, responses: Mapping[
 
 def _close_up(time_s: Floats, leader: Floats) -> tuple[float, float]:
     """The time around the largest move that all joints make within a moment."""
-    step = max(1, round(_JUMP_S / float(np.median(np.diff(time_s)))))
+    step = max(1, round(0.1 / float(np.median(np.diff(time_s)))))
     moved = np.abs(leader[step:] - leader[:-step]).sum(axis=1)
     start = float(time_s[int(np.argmax(moved > 0.99 * moved.max()))]) if len(moved) else float(time_s[0])
-    return start - _CLOSE_BEFORE_S, start + _CLOSE_AFTER_S
+    return start - 0.05, start + 0.45
 
 
 def _fit(axes: Axes, time_s: Floats, leader: Floats, curves: Sequence[tuple[Floats, Floats]]) -> None:
@@ -184,7 +180,7 @@ def plot_convergence(
         last = int(np.flatnonzero(cost > cost[-1])[-1]) + 1 if (cost > cost[-1]).any() else 0
         axes.plot(evaluations[last], cost[last], "o", color=looks.AFTER.colour, markersize=4)
         axes.set_title(f"{JOINTS[joint]}\n{cost[-1]:.3g} after {evaluations[last]:,} evaluations")
-        if cost.min() > 0.0 and cost.max() > _WIDE_COSTS * cost.min():
+        if cost.min() > 0.0 and cost.max() > 20.0 * cost.min():  # a wide range
             make_logarithmic(axes)
         axes.set_xlim(left=0)
     rises = any((np.diff(cost) > 0.0).any() for _, cost in (curves[joint] for joint in joints))

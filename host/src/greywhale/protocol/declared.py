@@ -131,10 +131,6 @@ class Group:
     fields: tuple[Field, ...]
 
 
-# Beyond the range of every parameter.
-_BEYOND = 1 << 63
-
-
 @dataclass(frozen=True, slots=True)
 class Parameter:
     """One entry of the table: "joint2.kp". minimum, maximum and default are raw."""
@@ -163,7 +159,7 @@ class Parameter:
             words = sentences.PARAMETER_NOT_FINITE
             raise BadUsage(words.format(name=self.name, value=physical, advice=self._advice()))
         scaled = physical / self.lsb + 0.5
-        raw = math.floor(scaled) if math.isfinite(scaled) else _BEYOND
+        raw = math.floor(scaled) if math.isfinite(scaled) else 1 << 63  # beyond every range
         self._check(raw, physical)
         return raw
 

@@ -9,6 +9,7 @@ JOINTS = 4  # of the firmware; an arm may use fewer
 TICK_S = 1e-3
 # Conversions of each potentiometer in a tick; the firmware adds them up.
 CONVERSIONS = 4
+CONVERTER_COUNTS = 1024  # of 10 bits
 # The unit of an angle in samples and limits, rad.
 ANGLE_LSB = Sample.LSB["leader"]
 # While the host leads: so many ticks from one point of the reference to the next, and the longest step between them.

@@ -15,7 +15,6 @@ from greywhale.base.errors import BadUsage, UserError, os_reason
 from greywhale.protocol.transport import READ_WAIT_S, PortLostError
 
 PREFIX = "socket://"  # as pyserial has it
-_CONNECT_WAIT_S = 5.0  # a person waits; another machine of the same house answers in milliseconds
 PIECE_BYTES = 65536  # read at once
 
 
@@ -81,7 +80,7 @@ def address_of(port: str) -> tuple[str, int]:
 
 def _connect(port: str) -> socket.socket:
     try:
-        connection = socket.create_connection(address_of(port), timeout=_CONNECT_WAIT_S)
+        connection = socket.create_connection(address_of(port), timeout=5.0)
     except OSError as error:
         raise UserError(
             f"{port}: no connection: {os_reason(error)}; start a bench there (`greywhale sim --listen`), or name "

@@ -23,9 +23,6 @@ BAUD = 1_000_000
 
 # How long a read waits for the first byte. Short, so that deadlines are kept; long enough not to spin.
 READ_WAIT_S = 0.02
-_WRITE_WAIT_S = 1.0  # until a write that does not end is an error
-# So long is DTR down before it rises again: a board's reset line needs some 2 ms.
-_DTR_DOWN_S = 0.05
 _BUSY = (errno.EBUSY, errno.EAGAIN, errno.EWOULDBLOCK)
 _HAS_OPEN, _READS = "has the port open too", "reads from the port too"
 
@@ -155,7 +152,7 @@ def _open_serial(port: str, baud: int, restart: bool) -> serial.Serial:
     if restart and system.keeps_dtr(line):
         system.keep_dtr(line, False)
         _close(line)
-        time.sleep(_DTR_DOWN_S)
+        time.sleep(0.05)  # a board's reset line needs some 2 ms
         line = _open(port, baud)
     return line
 
@@ -166,7 +163,7 @@ def _open(port: str, baud: int) -> serial.Serial:
     try:
         if system.is_own_terminal(port):
             raise UserError(f"{port}: this is a terminal, not a board's port; `greywhale ports` lists those there are.")
-        line = serial.Serial(port, baud, timeout=READ_WAIT_S, write_timeout=_WRITE_WAIT_S, exclusive=True)
+        line = serial.Serial(port, baud, timeout=READ_WAIT_S, write_timeout=1.0, exclusive=True)
     except ValueError as error:
         raise UserError(f"{port}: cannot be opened: {error}.") from None
     except OSError as error:

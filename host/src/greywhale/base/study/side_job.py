@@ -19,7 +19,6 @@ from greywhale.base.study.workers import LocalWorkers, SerialWorkers, left_at_on
 from greywhale.base.types import NotedProgress
 
 Result = TypeVar("Result")
-LOOK_S = 0.05  # how often a report, the end or Ctrl-C is looked for
 
 
 class Line(Protocol):
@@ -47,7 +46,7 @@ class SideJob(Generic[Result]):
         with contextlib.suppress(OSError):  # its process has ended
             self._line.send(self._number)
         while not self._future.done():
-            if self._told(LOOK_S):
+            if self._told(0.05):  # so often a report, the end or Ctrl-C is looked for
                 self._report(*self._line.recv())
         while self._told(0.0):
             self._line.recv()

@@ -29,15 +29,14 @@ from greywhale.files.arm import default_arm, load_arm
 from greywhale.files.leader import load_leader, save_leader
 from greywhale.files.paper_tables import paper_table
 from greywhale.files.trajectory import Trajectory
+from greywhale.identify.excite import multisine
 from greywhale.loop import human_reaches
 from greywhale.measure import evaluate
 from greywhale.pictures.follow import draw_following, trace
 from greywhale.protocol.schema import Board
 from greywhale.protocol.table import ParameterTable
 
-SHORTEST_S, LONGEST_S = 4.0, 600.0  # of generated motions
 PROVING_TRIALS = 4  # sets tried on the arm
-SHORTEST_PRACTICE_S, LONGEST_PRACTICE_S = 10.0, 60.0
 
 
 @dataclass(frozen=True)
@@ -175,10 +174,10 @@ class _Stage:
 
 def _motion(options: DemoOptions) -> Trajectory:
     if options.controller is None:
-        require_between("the practice", options.practice_s, "s", (SHORTEST_PRACTICE_S, LONGEST_PRACTICE_S))
+        require_between("the practice", options.practice_s, "s", (10.0, 60.0))
     if options.leader is not None:
         return load_leader(options.leader)
-    require_between("the duration", options.duration_s, "s", (SHORTEST_S, LONGEST_S))
+    require_between("the duration", options.duration_s, "s", (multisine.SHORTEST_S, multisine.LONGEST_S))
     return human_reaches(options.seed, options.duration_s)
 
 
