@@ -13,8 +13,9 @@ import pytest
 import serial
 
 from greywhale.base.errors import UserError
-from greywhale.board.device import STOP_REPEAT_S, Device
+from greywhale.board.device import Device
 from greywhale.board.greeting import NoAnswerError
+from greywhale.board.limits import PATIENCE
 from greywhale.board.refusal import RefusedError
 from greywhale.protocol import schema
 from greywhale.protocol.frames import encode_frame
@@ -221,7 +222,7 @@ class SlowlyRead(FakeBoard):
 
     def read(self) -> bytes:
         if not (taken := super().read()):
-            self.wait(STOP_REPEAT_S)
+            self.wait(PATIENCE.stop_repeat_s)
         assert self.clock() < 60.0
         return taken
 

@@ -9,7 +9,7 @@ import pytest
 from greywhale.base.errors import UserError
 from greywhale.base.types import show_no_progress
 from greywhale.board.episodes import EpisodePlan, Episodes, Person, Wish, record_episodes
-from greywhale.board.record import BUSY_LEASE_MS
+from greywhale.board.limits import RECORDING
 from greywhale.files.log import read_log, writer
 from greywhale.protocol import schema
 from greywhale.protocol.schema import Fault, State
@@ -110,7 +110,7 @@ def test_ctrl_c_turns_the_motors_off_before_the_episode_is_on_the_disk(
     with FakeBoard() as board:
         monkeypatch.setattr(writer, "sync", lambda file: states.append(board.state))
         with pytest.raises(KeyboardInterrupt):
-            recorded(board, Scripted((100, Wish.NEXT), (BUSY_LEASE_MS // 2, CTRL_C)), tmp_path)
+            recorded(board, Scripted((100, Wish.NEXT), (RECORDING.busy_lease_ms // 2, CTRL_C)), tmp_path)
     assert states == [State.DISABLED]
     log = read_log(tmp_path / "episode_000.csv")
     assert (log.complete, log.ended_by, log.origin.task) == (False, "Ctrl-C, or a signal to end.", TASK)

@@ -10,7 +10,8 @@ import pytest
 
 from greywhale.base.errors import UserError
 from greywhale.board.device import Device
-from greywhale.board.lead import BOARD_ROOM_POINTS, Leading, Plan
+from greywhale.board.lead import Leading, Plan
+from greywhale.board.limits import LEAD
 from greywhale.files.trajectory import Trajectory
 from greywhale.loop import human_reaches
 from greywhale.protocol import schema
@@ -57,7 +58,7 @@ class Board:
         self.tick += 1
         while self._to_board and self._to_board[0][0] <= self.tick:
             _, number, step = self._to_board.popleft()
-            if number == self.next and len(self.queue) < BOARD_ROOM_POINTS:
+            if number == self.next and len(self.queue) < LEAD.room_points:
                 self.queue.append(step)
                 self.next = (self.next + 1) % 256
             self.fullest = max(self.fullest, len(self.queue))
@@ -116,7 +117,7 @@ def test_every_point_is_played_once_and_in_its_turn(lose: float, delay: int, eve
         assert np.allclose(path, goal, atol=1e-12)
         assert leading.starved == 0
         assert board.sent == leading.points
-    assert board.fullest <= BOARD_ROOM_POINTS
+    assert board.fullest <= LEAD.room_points
     assert leading.slowest == 1.0
 
 
@@ -153,7 +154,7 @@ def test_a_host_that_stood_still_sends_no_more_than_the_board_can_receive() -> N
         sent = board.sent
         for tick in waiting:
             leading.keep_ahead(tick, sample(tick))
-        assert board.sent - sent <= BOARD_ROOM_POINTS
+        assert board.sent - sent <= LEAD.room_points
 
 
 def test_a_follower_that_lags_slows_the_motion_and_stops_it_before_the_fault() -> None:

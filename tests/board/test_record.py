@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from greywhale.base.errors import UserError
-from greywhale.board.record import LEASE_MS, record, record_led
+from greywhale.board.limits import RECORDING
+from greywhale.board.record import record, record_led
 from greywhale.board.stream import LeaseLostError, stream
 from greywhale.files.log import read_log
 from greywhale.files.trajectory import Trajectory
@@ -72,7 +73,7 @@ def test_a_motion_that_is_too_fast_never_starts_a_motor(tmp_path: Path) -> None:
 
 
 def test_all_samples_that_waited_while_this_host_stood_still_renew_the_lease_once() -> None:
-    with served() as (board, device), device.enabled(LEASE_MS):
+    with served() as (board, device), device.enabled(RECORDING.lease_ms):
         received = stream(device, 1)
         for _ in range(200):
             next(received)
@@ -84,7 +85,7 @@ def test_all_samples_that_waited_while_this_host_stood_still_renew_the_lease_onc
 
 
 def test_following_is_recorded_from_the_end_of_the_soft_start(out: Path) -> None:
-    seconds = 5 * LEASE_MS / 1000  # the lease must be renewed meanwhile
+    seconds = 5 * RECORDING.lease_ms / 1000  # the lease must be renewed meanwhile
     with FakeBoard() as board:
         with open_device(board) as device:
             record(device, out, seconds, enable=True)
@@ -92,7 +93,7 @@ def test_following_is_recorded_from_the_end_of_the_soft_start(out: Path) -> None
         renewals = board.asked(schema.RenewRequest)
     log = read_log(out)
     assert set(log.state) == {"following"}
-    assert len(log.time) == 5 * LEASE_MS
+    assert len(log.time) == 5 * RECORDING.lease_ms
     assert 4 * 5 - 2 <= renewals <= 4 * 5 + 2
 
 
@@ -193,7 +194,7 @@ def test_the_lease_running_out_is_named(tmp_path: Path) -> None:
     with served() as (_, device), pytest.raises(LeaseLostError, match="board went on, .* lease of 500 ms"):
         device.renew = lambda: None  # type: ignore[method-assign]
         record(device, tmp_path / "log.csv", 10.0, enable=True)
-    assert len(read_log(tmp_path / "log.csv").time) <= LEASE_MS
+    assert len(read_log(tmp_path / "log.csv").time) <= RECORDING.lease_ms
 
 
 def test_a_refused_enable_leaves_no_file(tmp_path: Path) -> None:

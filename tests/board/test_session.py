@@ -20,6 +20,7 @@ from greywhale.base.errors import UserError
 from greywhale.base.runtime import VARIABLE
 from greywhale.board import meeting
 from greywhale.board.device import Device
+from greywhale.board.limits import PATIENCE
 from greywhale.board.meeting import Peer
 from greywhale.board.record import record
 from greywhale.board.session import NOTE, Session, StopAsked, ask_for_clutch, ask_to_stop
@@ -318,7 +319,7 @@ def test_clients_that_say_nothing_hinder_nobody() -> None:
     with PortBoard() as board, contextlib.ExitStack() as stack:
 
         def crowd(device: Device) -> None:
-            for _ in range(meeting.MOST_CLIENTS + 3):
+            for _ in range(PATIENCE.most_clients + 3):
                 stack.enter_context(connected(board))
                 device.status()
 

@@ -10,7 +10,7 @@ import pytest
 
 from greywhale.base.errors import UserError
 from greywhale.board.device import Device
-from greywhale.board.record import BUSY_LEASE_MS, LEASE_MS
+from greywhale.board.limits import RECORDING
 from greywhale.board.stream import LeaseLostError
 from greywhale.commission.arm_on_port import TRIES, ArmOnPort
 from greywhale.files.arm import load_arm
@@ -59,7 +59,7 @@ def test_what_this_computer_spoilt_is_led_again(
     assert read_log(tmp_path / "log.csv").complete
     assert board.asked(schema.LeadRequest) == 1 + times
     assert told.busy == times
-    assert board.lease_ms == BUSY_LEASE_MS > LEASE_MS
+    assert board.lease_ms == RECORDING.busy_lease_ms > RECORDING.lease_ms
 
 
 def test_after_a_few_tries_it_says_so(

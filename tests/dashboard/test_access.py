@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from greywhale.dashboard.access import MOST_TICKETS, TICKET_LASTS_S, Access
+from greywhale.dashboard.access import Access
+from greywhale.dashboard.limits import REQUESTS
 
 
 class Clock:
@@ -30,9 +31,9 @@ def test_a_ticket_is_void_when_its_time_is_over() -> None:
     clock = Clock()
     access = Access(80, clock)
     first, second = ticket_of(access.address()), ticket_of(access.address())
-    clock.now_s = TICKET_LASTS_S
+    clock.now_s = REQUESTS.ticket_lasts_s
     assert access.exchange(first) == access.token
-    clock.now_s = TICKET_LASTS_S + 1.0
+    clock.now_s = REQUESTS.ticket_lasts_s + 1.0
     assert access.exchange(second) is None
     assert access.exchange(ticket_of(access.address())) == access.token
 
@@ -47,8 +48,8 @@ def test_what_is_no_ticket_gets_nothing() -> None:
 
 def test_of_many_unused_tickets_the_newest_count() -> None:
     access = Access(80)
-    tickets = [ticket_of(access.address()) for _ in range(MOST_TICKETS + 3)]
-    assert [access.exchange(one) is not None for one in tickets] == [False] * 3 + [True] * MOST_TICKETS
+    tickets = [ticket_of(access.address()) for _ in range(REQUESTS.most_tickets + 3)]
+    assert [access.exchange(one) is not None for one in tickets] == [False] * 3 + [True] * REQUESTS.most_tickets
 
 
 def test_an_address_says_nothing_of_the_token() -> None:

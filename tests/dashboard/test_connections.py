@@ -11,6 +11,7 @@ import sys
 import threading
 from collections.abc import Iterator
 from contextlib import ExitStack, closing, contextmanager, suppress
+from dataclasses import replace
 
 import pytest
 from starlette.responses import PlainTextResponse
@@ -18,8 +19,9 @@ from starlette.types import Receive, Scope, Send
 
 from greywhale.base import sockets, system
 from greywhale.dashboard import connections, guard, server
-from greywhale.dashboard.door import GRACE_S, PATIENCE_S, Door
+from greywhale.dashboard.door import Door
 from greywhale.dashboard.guard import SUBPROTOCOL, Guard
+from greywhale.dashboard.limits import CONNECTIONS, REQUESTS
 from tests.dashboard.browser import PATIENCE_S as HANGS_S
 from tests.dashboard.browser import Page
 
@@ -100,7 +102,7 @@ def test_who_shows_no_token_in_time_is_closed_and_who_has_shown_it_stays() -> No
         port = kept.sock.getsockname()
         halves = [connect(page, one.replace(b"{port}", str(page.port).encode())) for one in HALF]
         assert page.ask("GET", "/") == (200, b"there"), "all of them are known by now"
-        now[0] = PATIENCE_S + 1.0
+        now[0] = CONNECTIONS.patience_s + 1.0
         assert [rest(one).count(b"there") for one in halves] == [0, 0, 0, 1, 1]
         assert ask() == b"there"
         assert kept.sock.getsockname() == port, "it was the same connection"
@@ -118,8 +120,7 @@ def test_too_many_with_the_token_are_told_so() -> None:
 
 
 def test_strangers_wait_for_each_other_and_the_owner_for_none_of_them(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(guard, "STRANGERS_A_SECOND", 0.0)
-    monkeypatch.setattr(guard, "STRANGERS_AT_ONCE", 3.0)
+    monkeypatch.setattr(guard, "REQUESTS", replace(REQUESTS, strangers=(0.0, 3.0)))
     request = b"%s HTTP/1.1\r\nHost: 127.0.0.1:%d\r\nConnection: close\r\n\r\n"
     asked = [b"GET /", b"GET /state", b"POST /enter", b"GET /", b"GET /state", b"POST /", b"HEAD /"]
     with serving(Door()) as page, page.open("/board") as own:
@@ -136,8 +137,7 @@ def test_strangers_wait_for_each_other_and_the_owner_for_none_of_them(monkeypatc
 
 
 def test_who_has_asked_for_something_has_its_time_before_others_come_in(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(guard, "STRANGERS_AT_ONCE", 0.0)  # nobody is answered
-    monkeypatch.setattr(guard, "STRANGERS_A_SECOND", 0.0)
+    monkeypatch.setattr(guard, "REQUESTS", replace(REQUESTS, strangers=(0.0, 0.0)))  # nobody is answered
     now = [0.0]
     with serving(Door(most_strangers=3, clock=lambda: now[0])) as page, page.open("/board") as own:
         said = [b"GET / HTTP/1.1\r\nHost: 127.0.0.1:%d\r\n\r\n" % page.port, b"GET / HT", b"G"]
@@ -147,7 +147,7 @@ def test_who_has_asked_for_something_has_its_time_before_others_come_in(monkeypa
                 own.say({})
                 assert own.take() == "there"
             assert select.select(first, [], [], 0)[0] == []
-            now[0] = GRACE_S + 1.0
+            now[0] = CONNECTIONS.grace_s + 1.0
             assert rest(first[0]) == b""
             assert page.ask("GET", "/state") == (200, b"there")
         for one in first[1:]:
@@ -165,8 +165,7 @@ def test_a_stranger_is_closed_for_another_one_alone() -> None:
 
 
 def test_nobody_without_the_token_is_refused_for_others_requests(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(guard, "STRANGERS_AT_ONCE", 2.0)
-    monkeypatch.setattr(guard, "STRANGERS_A_SECOND", 1000.0)
+    monkeypatch.setattr(guard, "REQUESTS", replace(REQUESTS, strangers=(1000.0, 2.0)))
     with serving(Door()) as page:
         assert [Page(page.port, "").ask("GET", "/")[0] for _ in range(50)] == 50 * [200]
 
@@ -189,7 +188,7 @@ class Poor(socket.socket):
 def test_without_descriptors_it_closes_who_waits_and_says_so_once(
     monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
-    monkeypatch.setattr(connections, "WITHOUT_DESCRIPTORS_S", 0.0)
+    monkeypatch.setattr(connections, "CONNECTIONS", replace(CONNECTIONS, without_descriptors_s=0.0))
     listener = Poor()
     listener.bind(("127.0.0.1", 0))
     listener.listen()

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 import pytest
 
-from greywhale.dashboard.door import FEWEST_STRANGERS, GRACE_S, MOMENT_S, PATIENCE_S, Door
+from greywhale.dashboard.door import Door
+from greywhale.dashboard.limits import CONNECTIONS as LIMITS
 
 
 @dataclass
@@ -34,7 +35,7 @@ class Entrance:
         for port, visitor in zip(ports, visitors, strict=True):
             assert self.door.make_room()
             self.door.enter(("127.0.0.1", port), visitor)
-            self.now_s += MOMENT_S
+            self.now_s += LIMITS.moment_s
         return visitors
 
     def welcome(self, *ports: int) -> list[bool]:
@@ -54,9 +55,14 @@ def test_of_too_many_strangers_the_oldest_idle_ones_go(caplog: pytest.LogCapture
 def test_a_stranger_that_waits_for_an_answer_has_its_time_before_another_one_comes_in() -> None:
     entrance = Entrance()
     first = entrance.enter(1, busy=True)
-    entrance.now_s = 0.5 * GRACE_S
+    entrance.now_s = 0.5 * LIMITS.grace_s
     first += entrance.enter(2, 3, busy=True)
-    for at_s, goes in ((0.9 * GRACE_S, None), (1.1 * GRACE_S, 0), (1.2 * GRACE_S, None), (1.6 * GRACE_S, 1)):
+    for at_s, goes in (
+        (0.9 * LIMITS.grace_s, None),
+        (1.1 * LIMITS.grace_s, 0),
+        (1.2 * LIMITS.grace_s, None),
+        (1.6 * LIMITS.grace_s, 1),
+    ):
         entrance.now_s = at_s
         assert entrance.door.make_room() is (goes is not None)
         if goes is not None:
@@ -68,10 +74,10 @@ def test_a_stranger_that_has_just_come_in_is_not_closed_before_it_can_speak() ->
     entrance = Entrance()
     entrance.enter(1, 2, busy=True)
     [silent] = entrance.enter(3)
-    entrance.now_s -= 0.5 * MOMENT_S
+    entrance.now_s -= 0.5 * LIMITS.moment_s
     assert not entrance.door.make_room()
     assert not silent.gone
-    entrance.now_s += 0.5 * MOMENT_S
+    entrance.now_s += 0.5 * LIMITS.moment_s
     assert entrance.door.make_room()
     assert silent.gone
 
@@ -81,7 +87,7 @@ def test_strangers_push_out_nobody_who_has_shown_the_token() -> None:
     known = entrance.enter(1, 2)
     assert entrance.welcome(1, 2) == [True, True]
     strangers = entrance.enter(*range(3, 50))
-    entrance.now_s = 2.0 * PATIENCE_S
+    entrance.now_s = 2.0 * LIMITS.patience_s
     entrance.door.look()
     assert not any(one.gone for one in known)
     assert all(one.gone for one in strangers)
@@ -98,9 +104,12 @@ def test_those_with_the_token_are_bounded_by_themselves_and_one_that_goes_makes_
 def test_a_stranger_has_its_time_and_one_that_waits_for_an_answer_gets_all_of_it() -> None:
     entrance = Entrance()
     [silent], [served] = entrance.enter(1), entrance.enter(2, busy=True)
-    entrance.now_s = PATIENCE_S
+    entrance.now_s = LIMITS.patience_s
     [late] = entrance.enter(3)
-    for at_s, gone in ((PATIENCE_S, [False, False, False]), (1.1 * PATIENCE_S, [True, False, False])):
+    for at_s, gone in (
+        (LIMITS.patience_s, [False, False, False]),
+        (1.1 * LIMITS.patience_s, [True, False, False]),
+    ):
         entrance.now_s = at_s
         entrance.door.look()
         assert [one.gone for one in (silent, served, late)] == gone
@@ -113,13 +122,13 @@ def test_where_descriptors_are_few_half_of_the_strangers_go_and_no_more_come_in(
     entrance = Entrance(most_strangers=64, most_known=2)
     known = entrance.enter(1, 2)
     entrance.welcome(1, 2)
-    strangers = entrance.enter(*range(3, 3 + 4 * FEWEST_STRANGERS))
-    for left in (2 * FEWEST_STRANGERS, FEWEST_STRANGERS):
+    strangers = entrance.enter(*range(3, 3 + 4 * LIMITS.fewest_strangers))
+    for left in (2 * LIMITS.fewest_strangers, LIMITS.fewest_strangers):
         assert entrance.door.keep_fewer()
         assert [one.gone for one in strangers] == [True] * (len(strangers) - left) + [False] * left
     assert not entrance.door.keep_fewer()
     [new] = entrance.enter(100)
-    assert [one.gone for one in strangers].count(False) == FEWEST_STRANGERS - 1
+    assert [one.gone for one in strangers].count(False) == LIMITS.fewest_strangers - 1
     assert not any(one.gone for one in (new, *known))
 
 

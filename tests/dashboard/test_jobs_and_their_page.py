@@ -13,7 +13,8 @@ import pytest
 
 from greywhale.base import processes
 from greywhale.base.errors import UserError
-from greywhale.dashboard.jobs import MOST_KEPT_JOBS, Jobs
+from greywhale.dashboard.jobs import Jobs
+from greywhale.dashboard.limits import JOBS
 from greywhale.dashboard.relay import Relay
 from greywhale.protocol import schema
 from tests.dashboard.shared import Desk, Shared
@@ -30,7 +31,7 @@ def test_a_verb_that_runs_is_seen_stopped_and_alone_after_sixty_others(shared: S
         for _ in range(60):
             others.append(desk.start("evaluate", logs=["log.csv"]))
             assert desk.wait(others[-1])["state"] == "done"
-        assert [one["id"] for one in desk.jobs.facts()] == [id, *others[1 - MOST_KEPT_JOBS :]]
+        assert [one["id"] for one in desk.jobs.facts()] == [id, *others[1 - JOBS.most_kept :]]
         with pytest.raises(UserError, match="another verb uses the board"):
             desk.start("info")
         desk.jobs.stop(id)

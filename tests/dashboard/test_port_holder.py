@@ -13,10 +13,10 @@ from greywhale.board.device import Device
 from greywhale.board.session import ask_to_stop
 from greywhale.dashboard.client import Client
 from greywhale.dashboard.history import History
+from greywhale.dashboard.limits import BOARD
 from greywhale.dashboard.outbox import Outbox
-from greywhale.dashboard.port_holder import LOOK_AGAIN_S, STOPPED, PortHolder
+from greywhale.dashboard.port_holder import STOPPED, PortHolder
 from greywhale.dashboard.relay import Relay
-from greywhale.dashboard.silence import ASK_AGAIN_S
 from greywhale.protocol import schema
 from greywhale.protocol.lines import open_line
 from tests.board.fake_board import FakeBoard, Faults
@@ -66,7 +66,7 @@ def test_a_board_is_taken_when_it_comes_and_again_after_it_went(relay: Relay) ->
     with FakeBoard(Faults(unplug_at=200)) as first, FakeBoard() as second:
         holder = PortHolder(relay, None, chooser(None, first.port, None, second.port))
         page = Told(relay, 400, holder.end)
-        assert [holder.hold() for _ in range(4)] == [LOOK_AGAIN_S] * 4
+        assert [holder.hold() for _ in range(4)] == [BOARD.look_again_s] * 4
     nothing = "No board was found on any serial port; plug it in."
     assert page.sentences == [
         "",
@@ -82,14 +82,14 @@ def test_a_board_is_taken_when_it_comes_and_again_after_it_went(relay: Relay) ->
 
 def test_a_board_that_is_no_greywhale_is_told_and_asked_again_later(relay: Relay) -> None:
     with FakeBoard(Faults(silent=True)) as board:
-        assert PortHolder(relay, board.port).hold() == ASK_AGAIN_S
+        assert PortHolder(relay, board.port).hold() == BOARD.ask_again_s
     assert "the board has probably no greywhale firmware: flash it" in relay.link["sentence"]
     assert (relay.link["open"], relay.link["unflashed"]) == (False, True)
 
 
 def test_a_board_that_falls_silent_is_given_up(relay: Relay) -> None:
     with FakeBoard(Faults(stop_sampling_at=300)) as board:
-        assert PortHolder(relay, board.port).hold() == ASK_AGAIN_S
+        assert PortHolder(relay, board.port).hold() == BOARD.ask_again_s
         assert board.asked(schema.TelemetryRequest) == 3, "once more before it is given up, and off"
     assert "the board fell silent" in relay.link["sentence"]
     assert not relay.link["unflashed"], "it had answered"

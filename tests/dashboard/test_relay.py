@@ -7,8 +7,7 @@ from collections import Counter
 import pytest
 
 from greywhale.base.errors import UserError
-from greywhale.dashboard.lease import LEASE_MS, SILENCE_S
-from greywhale.dashboard.requests import ANSWER_S
+from greywhale.dashboard.limits import BOARD
 from greywhale.protocol import schema
 from greywhale.protocol.frames import FrameDecoder
 from greywhale_sim.lockstep import LockStepBench
@@ -16,7 +15,7 @@ from tests.board.fake_board import FakeBoard, Faults
 from tests.dashboard.shared import Shared, Viewer
 
 # By then the motors are off, whatever becomes of the page.
-OFF_S = SILENCE_S + 0.02
+OFF_S = BOARD.page_silence_s + 0.02
 
 
 def start(shared: Shared) -> Viewer:
@@ -96,7 +95,7 @@ def test_a_request_that_is_lost_delays_neither_others_nor_the_lease() -> None:
             driver.ask(schema.StatusRequest())
             driver.ask(schema.StatusRequest())
             seq = other.ask(schema.ParamGetRequest(count))
-            shared.live(2 * ANSWER_S + 0.02)
+            shared.live(2 * BOARD.answer_s + 0.02)
             assert [frame.seq for frame in other.answers()] == [seq]
         assert motors_on(driver)
 
@@ -157,7 +156,7 @@ def test_motors_run_as_long_as_their_page_is_there(shared: Shared) -> None:
     shared.live(1.0, here=page)
     assert motors_on(page)
     silent_from = shared.line.clock()
-    shared.live(SILENCE_S - 0.1)
+    shared.live(BOARD.page_silence_s - 0.1)
     assert motors_on(page)
     shared.live(silent_from + OFF_S - shared.line.clock())
     assert not motors_on(page)
@@ -176,7 +175,7 @@ def test_motors_go_off_with_their_page(shared: Shared, how: str) -> None:
 
 def test_motors_go_off_by_the_lease_if_this_host_hangs(shared: Shared) -> None:
     page = start(shared)
-    shared.line.wait(LEASE_MS / 1000 + 0.05)
+    shared.line.wait(BOARD.lease_ms / 1000 + 0.05)
     shared.turn()
     assert not motors_on(page)
 
@@ -188,7 +187,7 @@ def test_a_page_cannot_ask_for_a_longer_lease(bench: LockStepBench) -> None:
         for request in (schema.EnableRequest(0), schema.RenewRequest(60_000), schema.LeadRequest(60_000)):
             page.ask(request)
             shared.live(0.01)
-            assert board.lease_ms == LEASE_MS
+            assert board.lease_ms == BOARD.lease_ms
         shared.live(1.0)
         page.ask(schema.EnableRequest(PULSE_MS))
         shared.live(0.01)

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 from greywhale.base.errors import UserError
 from greywhale.dashboard import samples
+from greywhale.dashboard.limits import SAMPLES
 from greywhale.dashboard.samples import samples_of_log
 from greywhale.files.log.layout import HEADING
 from greywhale.protocol.schema import Sample, State
@@ -39,9 +41,9 @@ def test_ticks_grow_and_what_no_board_counts_is_the_nearest(tmp_path: Path) -> N
 
 def test_what_is_too_long_for_a_page_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     rows = [row(0.001 * number) for number in range(4)]
-    monkeypatch.setattr(samples, "MOST_SAMPLES", 4)
+    monkeypatch.setattr(samples, "SAMPLES", replace(SAMPLES, history=4))
     assert len(told(tmp_path / "log.csv", *rows)) == 4
-    for name, most in (("MOST_SAMPLES", 3), ("MOST_LOG_BYTES", 100)):
+    for name, most in (("SAMPLES", replace(SAMPLES, history=3)), ("MOST_LOG_BYTES", 100)):
         monkeypatch.setattr(samples, name, most)
         with pytest.raises(UserError, match=r"log\.csv: it is longer than the \d samples that a page shows"):
             told(tmp_path / "log.csv", *rows)

@@ -21,7 +21,8 @@ from greywhale.dashboard.answers import Answers
 from greywhale.dashboard.bucket import Bucket
 from greywhale.dashboard.door import Door
 from greywhale.dashboard.folder import Folder
-from greywhale.dashboard.guard import MOST_BODY_BYTES, MOST_UPLOAD_BYTES, REQUESTS_AT_ONCE, Guard
+from greywhale.dashboard.guard import Guard
+from greywhale.dashboard.limits import REQUESTS
 from greywhale.files.log.layout import HEADING, TITLE
 from greywhale.protocol import schema
 from greywhale.protocol.frames import FrameDecoder
@@ -116,17 +117,17 @@ def test_localhost_is_this_server_too(page: Page) -> None:
 
 
 def test_what_is_too_large_is_refused(page: Page) -> None:
-    for length in (str(MOST_BODY_BYTES + 1), "x"):
+    for length in (str(REQUESTS.most_body_bytes + 1), "x"):
         assert page.ask("POST", "/predict", headers={"Content-Length": length})[0] in (400, 413)
     with page.open("/board") as socket:
         with pytest.raises(ConnectionError, match="1009"):
-            socket.say(bytes(server.MOST_MESSAGE_BYTES + 1))  # more, unread at the end, would lose the server's word
+            socket.say(bytes(REQUESTS.most_message_bytes + 1))  # more, unread at the end, would lose the server's word
             while True:
                 socket.take()
 
 
 def test_a_body_that_comes_in_pieces_breaks_off_where_it_is_too_long() -> None:
-    pieces = [b"x" * MOST_BODY_BYTES, b"x", b"x"]
+    pieces = [b"x" * REQUESTS.most_body_bytes, b"x", b"x"]
     got: list[str] = []
 
     async def inner(scope: Scope, receive: Receive, send: Send) -> None:
@@ -171,7 +172,7 @@ def test_a_bucket_lets_so_many_through() -> None:
     assert [bucket.take() for _ in range(5)] == [True, True, True, False, False]
     now[0] = 0.2
     assert [bucket.take() for _ in range(3)] == [True, True, False]
-    assert REQUESTS_AT_ONCE > 100, "a page that opens asks for some ten files"
+    assert REQUESTS.owners[1] > 100, "a page that opens asks for some ten files"
 
 
 def test_a_board_over_the_wire(page: Page, shared: Shared) -> None:
@@ -223,7 +224,8 @@ def test_a_page_brings_fetches_renames_and_deletes_a_file(page: Page) -> None:
     ):
         answered, body = page.ask("PUT", address, log)
         assert (answered, told in json.loads(body)["name" if status == 200 else "error"]) == (status, True), body
-    assert page.ask("PUT", "/file?name=long.csv", log + bytes(MOST_BODY_BYTES))[0] == 200, "a log is longer than words"
+    longer = log + bytes(REQUESTS.most_body_bytes)
+    assert page.ask("PUT", "/file?name=long.csv", longer)[0] == 200, "a log is longer than words"
     assert page.ask("GET", named) == (200, log)
     assert page.ask("POST", "/file", {"name": "new é.csv", "to": "old.csv"})[0] == 200
     assert page.ask("DELETE", "/file?name=old.csv")[0] == 200
@@ -231,7 +233,7 @@ def test_a_page_brings_fetches_renames_and_deletes_a_file(page: Page) -> None:
     for method in ("PUT", "GET", "POST", "DELETE"):
         assert Page(page.port, "").ask(method, named, log)[0] == 403
         assert page.ask(method, named, log, {"Origin": "http://evil.example"})[0] == 403
-    too_long = {"Content-Length": str(MOST_UPLOAD_BYTES + 1)}
+    too_long = {"Content-Length": str(REQUESTS.most_upload_bytes + 1)}
     assert page.ask("PUT", named, headers=too_long)[0] == 413
 
 

@@ -21,7 +21,7 @@ import json, signal, socket, sys
 from greywhale.adapt.change import SetChanger
 from greywhale.board.calibrate.motors import examine_motor
 from greywhale.board.device import Device
-from greywhale.board.record import BUSY_LEASE_MS
+from greywhale.board.limits import RECORDING
 from greywhale.board.upload import read_parameters, run_set
 from greywhale.protocol.lent_line import lend
 
@@ -40,7 +40,7 @@ PULSES = """
 """
 CHANGES = """
     changer = SetChanger(device)
-    with device.enabled(BUSY_LEASE_MS):
+    with device.enabled(RECORDING.busy_lease_ms):
         for ratio in (900, 800, 700):
             wish = table.with_raw({"joint0.ku_mv": table["joint0.ku_mv"] * ratio // 1000})
             while not changer.is_ready(wish):

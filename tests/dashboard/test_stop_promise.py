@@ -13,8 +13,9 @@ from greywhale.base.errors import UserError
 from greywhale.board.session import Session
 from greywhale.dashboard.client import Client
 from greywhale.dashboard.history import History
+from greywhale.dashboard.limits import BOARD
 from greywhale.dashboard.outbox import Outbox
-from greywhale.dashboard.port_holder import AFTER_STOP_S, PortHolder
+from greywhale.dashboard.port_holder import PortHolder
 from greywhale.dashboard.relay import Relay
 from greywhale.protocol import schema
 from greywhale.protocol.frames import encode_frame
@@ -179,7 +180,7 @@ def test_a_stop_from_a_terminal_ends_the_verb_and_lets_no_start_through(motors: 
     relay.join(page)
     page.every = 1
     with FakeBoard() as board:
-        assert PortHolder(relay, board.port).hold() == AFTER_STOP_S
+        assert PortHolder(relay, board.port).hold() == BOARD.after_stop_s
         assert board.asked(schema.EnableRequest) == (motors == "on")
         assert board.state is schema.State.DISABLED
     assert ended == [f"Stopped with `greywhale stop` in another terminal: {AGAIN}"]

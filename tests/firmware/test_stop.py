@@ -7,7 +7,8 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from greywhale.board.device import STOP_REPEAT_S, stop_message
+from greywhale.board.device import stop_message
+from greywhale.board.limits import PATIENCE
 from greywhale.protocol import frames, schema
 from greywhale_sim.board_with_image import CYCLES_PER_TICK, BoardWithImage
 from greywhale_sim.line import Noise
@@ -83,7 +84,7 @@ def test_motors_are_off_soon_after_a_stop_inside_a_flood_or_after_the_line_is_lo
         stopped_at = bench.board.cycle
         for sequence in (77, 77):  # as the host does: again after a while
             bench.board.uart_send(stop_message(sequence))
-            flood.go_on(1000 * STOP_REPEAT_S)
+            flood.go_on(1000 * PATIENCE.stop_repeat_s)
         assert flood.off_at is not None
         since = max(stopped_at, flood.lost_at or 0) if flood.off_at >= stopped_at else flood.lost_at
         assert since is not None, "nothing but a stop or lost bytes turns the motors off"
@@ -120,7 +121,7 @@ def test_a_stop_acts_although_one_byte_in_twenty_is_damaged(bench: BoardWithImag
         bench.board.uart_send(line(bytes([1, 2, 3])))  # what a damaged request has left behind
         while bench.motors_on:
             bench.board.uart_send(line(stop_message(trial % 255 + 1)))
-            for _ in range(round(1000 * STOP_REPEAT_S)):
+            for _ in range(round(1000 * PATIENCE.stop_repeat_s)):
                 bench.wait(1)
                 if not bench.motors_on:
                     break

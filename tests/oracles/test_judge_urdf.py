@@ -12,7 +12,8 @@ import pytest
 
 from greywhale.arm.export import urdf
 from greywhale.arm.from_urdf import import_urdf
-from greywhale.arm.judge_urdf import ROUNDING_SHARE, why_no_body
+from greywhale.arm.judge_urdf import why_no_body
+from greywhale.arm.limits import DOUBTS
 from greywhale.files.arm import default_arm
 
 COUNT = 400
@@ -41,7 +42,7 @@ def test_it_takes_the_inertias_that_mujoco_takes() -> None:
     for _ in range(COUNT):
         turn, _ = np.linalg.qr(random.normal(size=(3, 3)))
         inertia = turn @ np.diag(random.uniform(-0.2, 1.0, 3)) @ turn.T
-        if margin(inertia) > 2.0 * ROUNDING_SHARE:  # where digits are rounded greywhale takes a little more
+        if margin(inertia) > 2.0 * DOUBTS.rounding_share:  # where digits are rounded greywhale takes a little more
             judged.append((why_no_body(inertia) == "", mujoco_takes(inertia)))
     assert all(ours == theirs for ours, theirs in judged)
     assert 50 < sum(ours for ours, _ in judged) < len(judged) - 50, "there are enough of both kinds"

@@ -11,7 +11,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from greywhale.arm.parameters import USUAL_NOISE_V, with_usual_noise
+from greywhale.arm.limits import GUESSES
+from greywhale.arm.parameters import with_usual_noise
 from greywhale.base.errors import UserError
 from greywhale.base.types import show_no_progress
 from greywhale.loop import plant_row
@@ -251,7 +252,7 @@ def test_where_the_arm_itself_will_judge_unrest_on_the_model_counts_less(
 
 def test_silent_potentiometers_get_the_noise_of_ordinary_ones() -> None:
     arm = with_usual_noise(make_arm(follower_pots={"joint": {"noise": 0.0}}, leader_pots={"joint": {"noise": 0.01}}))
-    assert [pot.noise for pot in arm.follower_pots.joint] == [USUAL_NOISE_V] * 4
+    assert [pot.noise for pot in arm.follower_pots.joint] == [GUESSES.noise_v] * 4
     assert [pot.noise for pot in arm.leader_pots.joint] == [0.01] * 4
 
 

@@ -18,12 +18,12 @@ from wsproto import ConnectionType, WSConnection
 from wsproto.events import BytesMessage, Ping, Request
 
 from greywhale.base.processes import start
-from greywhale.dashboard.history import MOST_SAMPLES
+from greywhale.dashboard.limits import SAMPLES
 from greywhale.protocol import schema
 from greywhale.protocol.frames import FrameDecoder, encode_frame
 from tools.benchmarks.figure import Figure, at_most
 
-SECONDS = MOST_SAMPLES / 1000
+SECONDS = SAMPLES.history / 1000
 MOST_CPU, MOST_MB, FIRST_S, PREDICTED_S = 0.2, 200.0, 4.0, 0.05
 PREDICTIONS = 20
 

@@ -20,7 +20,7 @@ from greywhale.base.errors import UserError
 from greywhale.base.types import Floats
 from greywhale.board.device import Device
 from greywhale.board.lead import Leading, leadable
-from greywhale.board.record import LEASE_MS
+from greywhale.board.limits import RECORDING
 from greywhale.board.stream import Received, stream, why_stopped
 from greywhale.board.upload import read_parameters
 from greywhale.files.exchange.lerobot_frames import names_of
@@ -184,9 +184,9 @@ class Link:
         self._goal = self._leading = None
         self._following, self._began = False, one.elapsed
         if wanted is Motors.FOLLOW:
-            motors.enter_context(self.device.enabled(LEASE_MS))
+            motors.enter_context(self.device.enabled(RECORDING.lease_ms))
         elif wanted is Motors.LEAD:
-            begun = motors.enter_context(self.device.leading(LEASE_MS))
+            begun = motors.enter_context(self.device.leading(RECORDING.lease_ms))
             self._goal = Goal(np.array(begun.reference) * ANGLE_LSB, self.speed)
             limit = self.table.physical("tracking_limit")
             self._leading = Leading(self.device, begun, self._goal, limit, AHEAD_POINTS)

@@ -11,8 +11,9 @@ import pytest
 from greywhale.arm.parameters import JOINT_NAMES
 from greywhale.base.errors import UserError
 from greywhale.board.calibrate.person import PersonAnswer, Watch
-from greywhale.board.calibrate.walk import HELD_TICKS, SCRIPT_TRIES, Walk
+from greywhale.board.calibrate.walk import Walk
 from greywhale.board.calibrate.words import POSITIVE_WAYS, poses_asked
+from greywhale.board.limits import CALIBRATION
 from greywhale.board.pots import FULL_SCALE
 from greywhale.protocol import schema
 from greywhale.protocol.joints import ALL, Joints
@@ -51,7 +52,7 @@ class Arms:
         self.at = np.full(8, 500.0) + COUNTS_PER_RAD * rad
 
     def samples(self) -> list[schema.Sample]:
-        rows, self.coming = (self.coming or [self.at + self.drift * ms for ms in range(HELD_TICKS)]), []
+        rows, self.coming = (self.coming or [self.at + self.drift * ms for ms in range(CALIBRATION.held_ticks)]), []
         return [self._sample(row) for row in rows]
 
     def _sample(self, counts: np.ndarray) -> schema.Sample:
@@ -195,7 +196,7 @@ def test_many_mistakes_in_one_sweep_lose_no_other() -> None:
     script, way = walk(
         [
             *sweeps([0]),
-            *(wrong * (SCRIPT_TRIES + 2)),
+            *(wrong * (CALIBRATION.script_tries + 2)),
             wrong[0],
             ("Follower joint 0, base yaw: mend it", rest, BACK),
             *sweeps([0, 4]),
@@ -205,11 +206,13 @@ def test_many_mistakes_in_one_sweep_lose_no_other() -> None:
     )
     way.go()
     assert script.left == []
-    assert sum("did not move: check that its shaft" in told for told in script.told) == SCRIPT_TRIES + 3
+    assert sum("did not move: check that its shaft" in told for told in script.told) == CALIBRATION.script_tries + 3
 
 
 def test_a_script_makes_a_mistake_but_a_few_times() -> None:
-    script, way = walk([*sweeps([0]), *([("Sweep 2 of 2", rest, DONE)] * SCRIPT_TRIES)], joints=(0,), patient=False)
+    script, way = walk(
+        [*sweeps([0]), *([("Sweep 2 of 2", rest, DONE)] * CALIBRATION.script_tries)], joints=(0,), patient=False
+    )
     with pytest.raises(UserError, match="port: Follower potentiometer 0 reads 500 to 500 of 1023 and did not move"):
         way.go()
     assert script.left == []
@@ -233,7 +236,7 @@ def test_wires_that_are_exchanged_while_one_mends_accuse_nobody() -> None:
 
 @pytest.mark.parametrize("patient", [True, False])
 def test_arms_that_drift_are_asked_to_hold_still_a_person_as_often_as_it_takes(patient: bool) -> None:
-    drifting: list[Step] = [("Pose 1 of 4", drifts(0.02), DONE)] * SCRIPT_TRIES
+    drifting: list[Step] = [("Pose 1 of 4", drifts(0.02), DONE)] * CALIBRATION.script_tries
     script, way = walk([*sweeps([0, 4]), *drifting, ("Pose 1 of 4", drifts(0.0), DONE), *POSES[1:]], (0,), patient)
     if patient:
         way.go()

@@ -14,7 +14,7 @@ import numpy as np
 
 from greywhale.adapt.limits import ADAPTATION_LIMITS, ChangeLimits
 from greywhale.board.device import Device
-from greywhale.board.record import BUSY_LEASE_MS
+from greywhale.board.limits import RECORDING
 from greywhale.board.stream import Received
 from greywhale.board.upload import apply_staged, staging
 from greywhale.protocol.firmware import ANGLE_LSB
@@ -79,6 +79,6 @@ class SetChanger:
         assert self._table is not None
         self._device.stop()
         apply_staged(self._device, self._table)
-        self._device.enable(BUSY_LEASE_MS)
+        self._device.enable(RECORDING.busy_lease_ms)
         # What the board has staged now is not known for certain.
         self._table = None

@@ -23,7 +23,7 @@ from greywhale.base.study import Workers
 from greywhale.base.types import NotedProgress, show_no_progress
 from greywhale.board.device import Device, hold_ctrl_c
 from greywhale.board.hunting_stop import Hunting, HuntingStop
-from greywhale.board.record import BUSY_LEASE_MS
+from greywhale.board.limits import RECORDING
 from greywhale.board.stream import Received, stream, why_stopped
 from greywhale.board.upload import read_parameters, run_set, upload_set
 from greywhale.files import controller as controller_file
@@ -126,7 +126,7 @@ class _Session:
 
     def work(self) -> None:
         received = stream(self._device, 1)
-        with self._device.enabled(BUSY_LEASE_MS):
+        with self._device.enabled(RECORDING.busy_lease_ms):
             pause = _Pause(self._limits.max_first_start_ticks)
             begun: int | None = None
             for one in received:

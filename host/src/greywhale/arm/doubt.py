@@ -7,7 +7,6 @@ import numpy as np
 from greywhale.arm.parameters import ArmParameters
 from greywhale.arm.plants import Plants, column, plant_row
 
-INTERVAL = (0.025, 0.975)  # of the plants: 95 % lie between
 # A column of a plant, and what it is called beside a joint.
 _TOLD = {
     "torque_per_volt": "torque per volt {} N m/V",
@@ -29,7 +28,7 @@ def doubt_of(parameters: ArmParameters, joint: int, drawn: Plants) -> str:
     found = []
     for name, words in _TOLD.items():
         place = column(name, joint)
-        low, high = np.quantile(drawn[:, place], INTERVAL)
+        low, high = np.quantile(drawn[:, place], (0.025, 0.975))
         if high > low:
             found.append(words.format(f"{estimate[place]:.4g} [{low:.4g}, {high:.4g}]"))
     return f"95 % of the arms that the logs allow: {', '.join(found)}." if found else ""

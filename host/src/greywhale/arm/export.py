@@ -13,13 +13,12 @@ import numpy as np
 
 from greywhale.arm.doubt import doubt_of
 from greywhale.arm.parameters import ArmParameters, Link
-from greywhale.arm.plant import Arm
+from greywhale.arm.plant import LONGEST_STEP_S, Arm
 from greywhale.arm.plants import COLUMNS, Plants
 
 LINK_NAMES = ("base", "upper_arm", "wrist", "hand")
 JOINT_IDS = ("base_yaw", "shoulder_pitch", "wrist_pitch", "wrist_roll")
 _AXES = ((0, 1, 0), (0, 0, 1), (0, 0, 1), (1, 0, 0))
-MJCF_STEP_S = 0.00025  # a slice of the bench
 # MuJoCo's friction and stops are soft; this is as stiff as it takes them at that step.
 _STIFF = {
     "solreffriction": "0.0005 1",
@@ -28,7 +27,6 @@ _STIFF = {
     "solimplimit": "0.9999 0.9999 0.001 0.5 2",
 }
 _TEETH_IMPEDANCE = 1e-3
-_RADIANS_PER_STEP = 1.0  # of the fastest motion of teeth; from 2.8 on RK4 makes it grow
 _STOPS = {key: _STIFF[key] for key in ("solreflimit", "solimplimit")}
 _SURE: Plants = np.zeros((0, COLUMNS))  # no plants but the arm itself
 _RODS = "Each link is drawn as a rod of its length, its mass and its inertia about its own line."
@@ -213,7 +211,8 @@ def _step(parameters: ArmParameters, lightness: list[float]) -> float:
     """The simulator's step in s: short enough for the stiffest teeth, or for those that damp most."""
     gears = [(parameters.joint[joint].gear, lightness[joint]) for joint in parameters.joints_in_use if lightness]
     rates = [max(math.sqrt(gear.stiffness * light), gear.damping * light) for gear, light in gears]
-    return min([MJCF_STEP_S, *(_RADIANS_PER_STEP / rate for rate in rates if rate)])
+    # A radian of the fastest motion of teeth at most: from 2.8 on RK4 makes it grow.
+    return min([LONGEST_STEP_S, *(1.0 / rate for rate in rates if rate)])
 
 
 def _left_out(parameters: ArmParameters, *more: str, gears: bool = False) -> str:

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from typing import Any
 
-from greywhale.arm.parameters import MOST_NOISE_V, USUAL_TRACK_RAD, ArmParameters
+from greywhale.arm.limits import DOUBTS
+from greywhale.arm.parameters import USUAL_TRACK_RAD, ArmParameters
 from greywhale.arm.plants import column
 from greywhale.base.types import Floats
 from greywhale.protocol.firmware import JOINTS
 
-# Back-EMF may be at most this share of a motor's damping, so that viscous friction stays positive.
-BACK_EMF_SHARE = 0.95
 # Keys of an arm file's joint -> a plant's columns.
 _FRICTION = {name: name for name in ("coulomb", "breakaway", "stribeck_velocity", "creep_velocity")}
 _FRICTION["load"] = "load_friction"
@@ -40,7 +39,7 @@ def arm_of(
         pot["play"], pot["lag"] = _cell(plant, joint, "pot_play"), _cell(plant, joint, "pot_lag")
         pot["centre"] = float(pot["centre"] + zero[joint])
         if noise is not None:
-            pot["noise"] = min(float(noise[joint]) * USUAL_TRACK_RAD / pot["track"], MOST_NOISE_V)
+            pot["noise"] = min(float(noise[joint]) * USUAL_TRACK_RAD / pot["track"], DOUBTS.most_noise_v)
             of_leader = data["leader_pots"]["joint"][joint]
             of_leader["noise"] = max(of_leader["noise"], pot["noise"])
     data["drive"]["resistance"] = 0.0  # the motors' resistance now has the driver's in it
@@ -75,7 +74,7 @@ def _motor(arm: ArmParameters, joint: int, plant: Floats) -> dict[str, float]:
     ratio = known.gear_ratio
     physical = arm.motor_equation == "physical"
     # Back-EMF's part of the damping is N Kt x torque per volt in both equations.
-    constant = min(known.torque_constant, BACK_EMF_SHARE * damping / (torque * ratio))
+    constant = min(known.torque_constant, DOUBTS.back_emf_share * damping / (torque * ratio))
     left = damping - torque * constant * ratio
     squared = ratio * ratio
     return {

@@ -14,6 +14,7 @@ import numpy as np
 
 from greywhale.arm.fewer_joints import UP, complete
 from greywhale.arm.judge_urdf import doubts, require_masses, require_reach
+from greywhale.arm.limits import URDF
 from greywhale.arm.parameters import JOINT_NAMES, ArmParameters
 from greywhale.arm.summary import Summary, summarise
 from greywhale.arm.urdf import read_chain
@@ -25,9 +26,6 @@ from greywhale.base.types import Floats
 
 PARALLEL = math.cos(math.radians(1.0))
 ACROSS = math.sin(math.radians(1.0))
-BESIDE_M = 1e-3  # axes that shall meet may pass each other so far
-ASIDE_SHARE, ASIDE_M = 0.15, 5e-3  # of a link's length, a centre of mass beside the link
-SHORTEST_M = 1e-3  # of a link: shorter ones have no direction
 ROUNDING_M = 1e-9  # by which sums of lengths may be off
 
 
@@ -116,27 +114,27 @@ def _find_frames(path: Path, joints: list[TurningJoint]) -> _Frames:
     # Points of the pitch axes in the upright plane through the yaw axis.
     points = [yaw.point, *(one.point - ((one.point - yaw.point) @ pitch) * pitch for one in (shoulder, wrist))]
     beside = (points[1] - yaw.point) @ np.cross(UP, pitch)
-    if abs(beside) > BESIDE_M:
+    if abs(beside) > URDF.beside_m:
         raise bad(shoulder, f"has its axis {1e3 * abs(beside):.0f} mm beside the yaw's, which this arm cannot have")
     points[1] = points[1] - beside * np.cross(UP, pitch)
     first = points[2] - points[1]
-    if np.linalg.norm(first) < SHORTEST_M:
+    if np.linalg.norm(first) < URDF.shortest_m:
         raise bad(wrist, "has the shoulder's axis")
     away = roll.point - points[2]
     for direction, what in ((pitch, "the arm's plane"), (np.cross(pitch, roll.axis), "the wrist's axis")):
-        if abs(away @ direction) > BESIDE_M:
+        if abs(away @ direction) > URDF.beside_m:
             raise bad(roll, f"has its axis {1e3 * abs(away @ direction):.0f} mm beside {what}")
     outwards = roll.body.centre - points[2] if roll.body.mass else away
     second = roll.axis * (1.0 if outwards @ roll.axis >= 0.0 else -1.0)
     # Where on its axis the roll joint stands changes nothing; between the two centres of mass it fits this arm.
     centres = [float((one.body.centre - points[2]) @ second) for one in (wrist, roll)]
-    length = max(SHORTEST_M, min(max(float(away @ second), centres[0]), centres[1]))
+    length = max(URDF.shortest_m, min(max(float(away @ second), centres[0]), centres[1]))
     points.append(points[2] + length * second)
     along = first / np.linalg.norm(first)
     forward = _forward(along, second, pitch)
     if np.cross(forward, UP) @ pitch < 0.0:
         pitch = -pitch
-    height = max(float((points[1] - points[0]) @ UP), SHORTEST_M)
+    height = max(float((points[1] - points[0]) @ UP), URDF.shortest_m)
     return _Frames(
         (points[0], points[1], points[2], points[3]),
         (UP, along, second, second),
@@ -177,9 +175,9 @@ def _link(path: Path, number: int, joint: TurningJoint, frames: _Frames, remarks
     if not np.diag(inertia).max() > 0.0:
         raise _empty(path, body, "inertia")
     reach = float(centre[0])
-    length = frames.lengths[number] if number < 3 else max(2.0 * reach, SHORTEST_M)
+    length = frames.lengths[number] if number < 3 else max(2.0 * reach, URDF.shortest_m)
     aside = float(np.linalg.norm(centre[1:]))
-    if aside > max(ASIDE_SHARE * length, ASIDE_M):
+    if aside > max(URDF.aside_share * length, URDF.aside_m):
         raise BadUsage(
             f"{path}: the centre of mass of link {cut(body.names[0])} is {1e3 * aside:.0f} mm beside the line of the "
             "link, which this arm cannot have."

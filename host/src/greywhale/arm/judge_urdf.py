@@ -8,22 +8,12 @@ from pathlib import Path
 
 import numpy as np
 
+from greywhale.arm.limits import DOUBTS
 from greywhale.arm.summary import JointSummary
 from greywhale.arm.urdf_joint import TurningJoint
 from greywhale.base.errors import BadUsage, cut
 from greywhale.base.types import Floats
 
-# Arms that an Arduino moves reach less far.
-FURTHEST_REACH_M = 5.0
-# A body is no further from its own centre than twice the arm's reach; inertias in kg mm2 or g mm2 would make it so.
-MOST_GYRATION_REACHES = 2.0
-# As heavy as water that fills a cube of the arm's reach; masses in g are more, as a link is slender.
-DENSEST_KG_M3 = 1000.0
-# Rounded digits may break the rules for inertias a little.
-ROUNDING_SHARE = 0.01
-# A motor with so many times the largest torque of gravity fits another arm, or is given in another unit.
-FAR_TOO_STRONG_RATIO, FAR_TOO_WEAK_RATIO = 40.0, 0.1
-SLOWEST_RAD_S, FASTEST_RAD_S = 0.05, 60.0  # of a joint that follows a hand
 _PRODUCTS = ((0, 1, "ixy"), (0, 2, "ixz"), (1, 2, "iyz"))
 
 
@@ -31,7 +21,7 @@ def why_no_body(inertia: Floats) -> str:
     """The reason why no body has this inertia (3, 3), kg m², about its centre of mass; "" where one may."""
     own = np.diag(inertia)
     moments = np.linalg.eigvalsh(inertia)
-    slack = ROUNDING_SHARE * max(float(np.abs(moments).max()), 0.0)
+    slack = DOUBTS.rounding_share * max(float(np.abs(moments).max()), 0.0)
     for moment, name in zip(own, ("ixx", "iyy", "izz"), strict=True):
         if moment < -slack:
             return f"its moment {name} is {moment:g} kg m2, but none is below 0"
@@ -54,9 +44,9 @@ def require_reach(path: Path, joints: Sequence[TurningJoint]) -> None:
     """Refuse an arm that is only possible in another unit of length. Raises UserError by name."""
     ways = _ways(joints)
     reach = sum(ways)
-    if reach > FURTHEST_REACH_M:
+    if reach > DOUBTS.furthest_reach_m:
         longest = int(np.argmax(ways))
-        unit = "mm" if reach > 100.0 * FURTHEST_REACH_M else "cm or mm"
+        unit = "mm" if reach > 100.0 * DOUBTS.furthest_reach_m else "cm or mm"
         raise BadUsage(
             f"{path}: what joint {cut(joints[longest].name)} carries is {ways[longest]:g} m long, and the whole arm "
             f"{reach:g} m; lengths are in m, and these look like {unit}: correct them."
@@ -71,12 +61,12 @@ def require_masses(path: Path, joints: Sequence[TurningJoint]) -> None:
     reach, bodies = sum(_ways(joints)), [joint.body for joint in joints[1:]]
     for body in bodies:
         radius = float(np.sqrt(np.linalg.eigvalsh(body.inertia)[2] / body.mass))
-        if radius > MOST_GYRATION_REACHES * reach:
+        if radius > DOUBTS.most_gyration_reaches * reach:
             raise BadUsage(
                 f"{path}: the inertia of link {cut(body.names[0])} is that of a ring with a radius of {radius:.3g} m, "
                 f"on an arm of {reach:.3g} m; inertias are in kg m2 (1 kg mm2 is 1e-6, 1 g mm2 is 1e-9): correct it."
             )
-    if sum(body.mass for body in bodies) > DENSEST_KG_M3 * reach**3:
+    if sum(body.mass for body in bodies) > DOUBTS.densest_kg_m3 * reach**3:
         heaviest = max(bodies, key=lambda body: body.mass)
         raise BadUsage(
             f"{path}: link {cut(heaviest.names[0])} has {heaviest.mass:g} kg on an arm of {reach:.3g} m; masses are in "
@@ -101,16 +91,16 @@ def doubts(joints: Sequence[TurningJoint], found: Sequence[JointSummary]) -> lis
                 f"{name} has a friction of {joint.friction:g} N m and an effort of {joint.effort:g} N m: its motor "
                 "cannot turn it."
             )
-        if largest > 0.0 and one.stall > FAR_TOO_STRONG_RATIO * largest:
+        if largest > 0.0 and one.stall > DOUBTS.far_too_strong_ratio * largest:
             doubts.append(
                 f"{name} has an effort of {joint.effort:g} N m, {one.stall / largest:.0f} times the largest torque of "
                 "gravity on this arm: write what its motor really gives, in N m."
             )
-        elif one.stall < FAR_TOO_WEAK_RATIO * one.gravity:
+        elif one.stall < DOUBTS.far_too_weak_ratio * one.gravity:
             doubts.append(
                 f"{name} has an effort of {joint.effort:g} N m against {one.gravity:.3g} N m of gravity: is the effort "
                 "in N m, and are the masses in kg?"
             )
-        if not SLOWEST_RAD_S <= joint.velocity <= FASTEST_RAD_S:
+        if not DOUBTS.slowest_rad_s <= joint.velocity <= DOUBTS.fastest_rad_s:
             doubts.append(f"{name} has a velocity of {joint.velocity:g} rad/s: is it in rad/s, and at the joint?")
     return doubts

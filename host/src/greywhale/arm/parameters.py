@@ -8,14 +8,13 @@ from typing import Annotated, Any, ClassVar, Literal, TypeVar
 from pydantic import AfterValidator, Field, SerializerFunctionWrapHandler, model_serializer, model_validator
 
 from greywhale import _native
+from greywhale.arm.limits import DOUBTS, GUESSES
 from greywhale.base.formats.kinds import Kind
 from greywhale.base.formats.toml_file import Table
 from greywhale.protocol.joints import Joints
 
 # The usual potentiometer: a track of 300 degrees, and noise of half a step of the board's converter (V rms).
 USUAL_TRACK_RAD = math.radians(300.0)
-USUAL_NOISE_V = 0.0024
-MOST_NOISE_V = 0.5  # rms: a tenth of the range, of which no angle could be read
 JOINT_NAMES = ("base yaw", "shoulder pitch", "wrist pitch", "wrist roll")
 PITCH_JOINTS = (1, 2)  # only these feel gravity
 PAPER_IYY0 = 8.26e-3  # as printed in the paper's Table 3
@@ -198,7 +197,7 @@ class Potentiometer(Table):
     track: Annotated[float, Field(gt=0, le=10 * math.tau)] = USUAL_TRACK_RAD  # rad, end to end
     centre: Annotated[float, Field(ge=-10 * math.tau, le=10 * math.tau)] = 0.0  # rad, joint angle at mid-track
     direction: Literal[1, -1] = 1  # sign of the voltage's slope
-    noise: Annotated[float, Field(ge=0, le=MOST_NOISE_V)] = 0.0  # V rms
+    noise: Annotated[float, Field(ge=0, le=DOUBTS.most_noise_v)] = 0.0  # V rms
     linearity: Annotated[float, Field(ge=0, le=0.05)] = 0.0  # largest deviation, share of full scale
     play: Annotated[float, Field(ge=0, le=0.2)] = 0.0  # rad, half of the play between joint and wiper
     lag: Annotated[float, Field(ge=0, le=0.05)] = 0.0  # s, time constant of the low-pass behind the wiper
@@ -213,7 +212,7 @@ class PotentiometerBank(Table):
 
 def usual_pots() -> PotentiometerBank:
     """Potentiometers as most arms have them, for an arm whose own are not known."""
-    return PotentiometerBank(joint=(Potentiometer(noise=USUAL_NOISE_V),) * 4)
+    return PotentiometerBank(joint=(Potentiometer(noise=GUESSES.noise_v),) * 4)
 
 
 class ArmParameters(Table):
@@ -298,6 +297,8 @@ def with_usual_noise(arm: ArmParameters) -> ArmParameters:
     banks = {}
     for name in ("leader_pots", "follower_pots"):
         bank = getattr(arm, name)
-        pots = tuple(pot if pot.noise > 0.0 else pot.model_copy(update={"noise": USUAL_NOISE_V}) for pot in bank.joint)
+        pots = tuple(
+            pot if pot.noise > 0.0 else pot.model_copy(update={"noise": GUESSES.noise_v}) for pot in bank.joint
+        )
         banks[name] = bank.model_copy(update={"joint": pots})
     return arm.model_copy(update=banks)

@@ -8,10 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from greywhale.arm.body import Body
+from greywhale.arm.limits import DOUBTS
 from greywhale.arm.parameters import JOINT_NAMES, PITCH_JOINTS, ArmParameters
 from greywhale.arm.plants import plant_row
-
-MUCH_GRAVITY_SHARE = 0.5  # of the stall torque: what is left moves a joint slowly
 
 
 @dataclass(frozen=True)
@@ -66,7 +65,7 @@ def _warnings(arm: ArmParameters, joint: int, one: JointSummary) -> list[str]:
             f"{name} cannot lift the arm: stretched out it needs {one.gravity:.3g} N m, and its motor has "
             f"{one.stall:.3g} N m at {arm.drive.supply:g} V; take a stronger motor, more gear or a spring."
         )
-    elif one.share > MUCH_GRAVITY_SHARE:
+    elif one.share > DOUBTS.much_gravity_share:
         warnings.append(
             f"{name} lifts the arm with {100 * one.share:.0f} % of its motor's torque; little is left to move it, and "
             "a motor that holds so much gets hot; half is a good limit, a third is better."

@@ -10,13 +10,11 @@ from xml.etree import ElementTree as xml
 import numpy as np
 
 from greywhale.arm.judge_urdf import why_no_body
+from greywhale.arm.limits import URDF
 from greywhale.arm.urdf_joint import Body, TurningJoint
 from greywhale.base.errors import BadUsage, UserError, cut, os_reason
 from greywhale.base.types import Floats
 
-LARGEST_FILE_BYTES = 4 << 20
-HEAVIEST_KG = 1e4  # of a link; what is heavier would only overflow
-LARGEST_NUMBER = 1e6  # m or rad; what is larger would only overflow
 TURNING = ("revolute", "continuous")
 WIDEST_LIMIT_RAD = 2.0 * math.tau  # to either side; wider limits are in degrees
 _XACRO = "xacro}"  # how its elements' names go on after the address of their namespace
@@ -28,10 +26,10 @@ def read_chain(path: Path) -> tuple[str, list[TurningJoint]]:
     """The robot's name and its joints from the base outwards. Raises UserError where it is no serial chain."""
     try:
         with path.open("rb") as file:
-            content = file.read(LARGEST_FILE_BYTES + 1)
+            content = file.read(URDF.largest_file_bytes + 1)
     except OSError as error:
         raise BadUsage(f"{path}: cannot be read: {os_reason(error)}.") from None
-    if len(content) > LARGEST_FILE_BYTES or b"<!ENTITY" in content or b"<!DOCTYPE" in content:
+    if len(content) > URDF.largest_file_bytes or b"<!ENTITY" in content or b"<!DOCTYPE" in content:
         raise BadUsage(f"{path}: it is larger than 4 MiB, or declares entities; a URDF needs neither.")
     try:
         robot = xml.fromstring(content)
@@ -128,7 +126,7 @@ class _Reader:
                 raise self._bad(f"link {cut(link)} is no possible body: {reason}", _CORRECT)
             turned = own[:3, :3] @ inertia @ own[:3, :3].T
             mass = self._number(inertial.find("mass"), "value", link)
-            if not 0.0 <= mass <= HEAVIEST_KG:
+            if not 0.0 <= mass <= URDF.heaviest_kg:
                 raise self._bad(f"the mass of link {cut(link)} is {mass:g} kg")
             body.add(link, mass, own[:3, 3], turned)
 
@@ -215,10 +213,10 @@ class _Reader:
             values = np.array([float(part) for part in text.split()])
         except ValueError:
             values = np.empty(0)
-        if values.shape != (3,) or not (np.abs(values) <= LARGEST_NUMBER).all():
+        if values.shape != (3,) or not (np.abs(values) <= URDF.largest_number).all():
             raise self._bad(
                 f"{key} of {cut(where)} is {cut(repr(text))}, but it must be three numbers of at most "
-                f"{LARGEST_NUMBER:g}"
+                f"{URDF.largest_number:g}"
             )
         return values
 

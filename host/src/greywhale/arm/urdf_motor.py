@@ -10,29 +10,23 @@ from typing import Any
 import numpy as np
 
 from greywhale.arm.body import Body
+from greywhale.arm.limits import GUESSES
 from greywhale.arm.parameters import JOINT_NAMES, ArmParameters
 from greywhale.arm.plants import plant_row
 from greywhale.arm.urdf_joint import TurningJoint
 from greywhale.base.errors import cut
 
-GUESSED_INERTIA_KG_M2 = (0.02, 0.03, 0.015, 0.005)  # kg m² at the joint, of motor and gears: a URDF does not say
-# A motor whose effort is not known carries the arm with a third of its torque, and starts it as a hand would.
-GUESSED_TORQUE_RATIO, BRISK_RAD_S2 = 3.0, 10.0
-GUESSED_RAD_S = 5.0  # a hobby servo's
-SAME_DAMPING_SHARE = 0.1  # of the damping that effort and velocity give
-_ANY_NM = 1.0  # stands for an effort while the links alone matter
-
 
 def joint_table(number: int, joint: TurningJoint, sign: float, offset: float, supply_v: float) -> dict[str, Any]:
     """Motor and friction at the joint itself (gear ratio 1): half the damping is the motor's, half its own."""
-    effort, velocity = joint.effort or _ANY_NM, joint.velocity or GUESSED_RAD_S
+    effort, velocity = joint.effort or 1.0, joint.velocity or GUESSES.rad_s
     torque_per_volt, damping = effort / supply_v, effort / velocity
     friction = 0.0 if math.isnan(joint.friction) else joint.friction
     low, high = _ends(joint, sign, offset)
     return {
         "name": JOINT_NAMES[number],
         "motor": {
-            "inertia": GUESSED_INERTIA_KG_M2[number],
+            "inertia": GUESSES.inertia_kg_m2[number],
             "resistance": 0.5 * damping / torque_per_volt**2,
             "torque_constant": 0.5 * damping / torque_per_volt,
             "viscous": 0.5 * damping,
@@ -47,10 +41,10 @@ def with_guessed_motors(joints: Sequence[TurningJoint], arm: ArmParameters) -> l
     """The joints with an effort (N m) and a velocity (rad/s) where theirs are not known; `arm` has their links."""
     body, level = Body.of(plant_row(arm)), np.zeros((1, 4))
     gravity, moments = np.abs(body.bias(level, level)[0]), np.diag(body.mass_matrix(level)[0])
-    needed = gravity + BRISK_RAD_S2 * (moments + np.array(GUESSED_INERTIA_KG_M2))
+    needed = gravity + GUESSES.brisk_rad_s2 * (moments + np.array(GUESSES.inertia_kg_m2))
     return [
         replace(
-            joint, effort=joint.effort or GUESSED_TORQUE_RATIO * float(nm), velocity=joint.velocity or GUESSED_RAD_S
+            joint, effort=joint.effort or GUESSES.torque_ratio * float(nm), velocity=joint.velocity or GUESSES.rad_s
         )
         for joint, nm in zip(joints, needed, strict=True)
     ]
@@ -62,10 +56,10 @@ def remarks_on(number: int, given: TurningJoint, used: TurningJoint, sign: float
     if not given.effort:
         remarks.append(
             f"{name} says no effort; {used.effort:.3g} N m is a guess, which carries the arm "
-            f"{GUESSED_TORQUE_RATIO:g} times: put in what its motor gives"
+            f"{GUESSES.torque_ratio:g} times: put in what its motor gives"
         )
     if not given.velocity:
-        remarks.append(f"{name} says no velocity; {GUESSED_RAD_S:g} rad/s is a guess")
+        remarks.append(f"{name} says no velocity; {GUESSES.rad_s:g} rad/s is a guess")
     ends = _ends(given, sign, offset)
     if given.endless:
         remarks.append(f"{name} turns for ever; its stops are a turn to either side")
@@ -73,13 +67,13 @@ def remarks_on(number: int, given: TurningJoint, used: TurningJoint, sign: float
         turns = " to ".join(f"{math.degrees(end):.0f}" for end in ends)
         remarks.append(f"the stops of {name}, {turns} degrees here, were cut to a turn to either side")
     said = used.effort / used.velocity
-    if given.damping > 0.0 and abs(given.damping - said) > SAME_DAMPING_SHARE * said:
+    if given.damping > 0.0 and abs(given.damping - said) > GUESSES.same_damping_share * said:
         remarks.append(
             f"the damping of {name}, {given.damping:.3g} N m s, was left out; effort by velocity, {said:.3g} N m s, "
             "stands for it"
         )
     remarks.append(
-        f"the inertia of the {JOINT_NAMES[number]}'s motor is a guess, {GUESSED_INERTIA_KG_M2[number]:g} kg m2"
+        f"the inertia of the {JOINT_NAMES[number]}'s motor is a guess, {GUESSES.inertia_kg_m2[number]:g} kg m2"
     )
     return remarks
 

@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field, fields, is_dataclass, replace
+from types import ModuleType
 from typing import Any, TypeVar
 
 import numpy as np
@@ -86,7 +87,18 @@ def changed(limits: Any, usual: Any) -> dict[str, Any]:
 
 def markdown_list(limits: Any) -> str:
     """The limits as a list for the documentation; an origin stands there if it is more than judgement."""
-    return "\n".join(f"- `{one.name}` **{_shown(one)}**: {one.reason}{_origin(one)}" for one in limits_in(limits))
+    return "\n".join(map(_markdown, limits_in(limits)))
+
+
+def markdown_list_of(room: ModuleType) -> str:
+    """Such a list of all groups in a room's module of limits, each under the name that the code has for it."""
+    groups = {name: value for name, value in vars(room).items() if is_dataclass(value) and not isinstance(value, type)}
+    each = (replace(one, name=f"{name}.{one.name}") for name, value in groups.items() for one in limits_in(value))
+    return "\n".join(map(_markdown, each))
+
+
+def _markdown(one: Limit) -> str:
+    return f"- `{one.name}` **{_shown(one)}**: {one.reason}{_origin(one)}"
 
 
 def _origin(one: Limit) -> str:

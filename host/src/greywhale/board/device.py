@@ -19,6 +19,7 @@ from typing import Any, Self
 from greywhale.base.errors import UserError
 from greywhale.base.interrupts import hold_back
 from greywhale.board.greeting import NoAnswerError, hello_in, silence, version
+from greywhale.board.limits import PATIENCE
 from greywhale.board.refusal import RefusedError
 from greywhale.board.session import Session
 from greywhale.protocol import schema
@@ -27,16 +28,7 @@ from greywhale.protocol.frames import Frame, FrameDecoder, encode_frame
 from greywhale.protocol.lines import open_line
 from greywhale.protocol.transport import Line, PortDisturbedError, PortLostError, disturbance
 
-# After this long without an answer a request is repeated, unchanged. Every request may be repeated safely.
-REPLY_WAIT_S = 0.3
-REQUEST_ATTEMPTS = 5  # so a silent board is given up after 1.5 s
-# A stop is repeated sooner, for as long in all: damaged bytes may cost some of the repeats.
-STOP_REPEAT_S = 0.02
-STOP_ATTEMPTS = round(REQUEST_ATTEMPTS * REPLY_WAIT_S / STOP_REPEAT_S)
-# A bootloader to which nobody spoke has started the firmware by then.
-QUIET_S = 2.0
-# A port that says nothing is greeted for this long, counted from its opening.
-PATIENCE_S = 5.0
+STOP_ATTEMPTS = round(PATIENCE.request_attempts * PATIENCE.reply_wait_s / PATIENCE.stop_repeat_s)
 
 logger = logging.getLogger(__name__)
 
@@ -61,8 +53,8 @@ class Device:
     def __init__(
         self,
         port: str,
-        quiet_s: float = QUIET_S,
-        patience_s: float = PATIENCE_S,
+        quiet_s: float = PATIENCE.quiet_s,
+        patience_s: float = PATIENCE.patience_s,
         *,
         restart: bool = True,
     ) -> None:
@@ -141,7 +133,7 @@ class Device:
         """Send a request until it is answered, and return the answer; a refusal is a UserError with its remedy."""
         self._session.check()
         try:
-            payload = self._exchange(request.TYPE, request.NAME, request.pack(), REQUEST_ATTEMPTS)
+            payload = self._exchange(request.TYPE, request.NAME, request.pack(), PATIENCE.request_attempts)
         except NoAnswerError as unheard:
             raise disturbance(self._transport) or unheard from None
         try:
@@ -237,7 +229,7 @@ class Device:
             try:
                 message = stop_message(self._next_sequence())
                 answer = self._repeat(
-                    message, schema.StopRequest.TYPE, schema.StopRequest.NAME, STOP_ATTEMPTS, STOP_REPEAT_S,
+                    message, schema.StopRequest.TYPE, schema.StopRequest.NAME, STOP_ATTEMPTS, PATIENCE.stop_repeat_s,
                     PortDisturbedError,  # that somebody else reads does not keep the stop from the board
                 )  # fmt: skip
                 state = schema.StopReply.unpack(answer).state.key
@@ -265,7 +257,7 @@ class Device:
     def _exchange(self, kind: int, name: str, payload: bytes, attempts: int) -> bytes:
         """The payload of the answer to a request."""
         message = encode_frame(kind, self._next_sequence(), payload)
-        return self._repeat(message, kind, name, attempts, REPLY_WAIT_S)
+        return self._repeat(message, kind, name, attempts, PATIENCE.reply_wait_s)
 
     def _repeat(
         self, message: bytes, kind: int, name: str, attempts: int, wait_s: float, *ignored: type[UserError]
@@ -278,7 +270,7 @@ class Device:
             deadline = looked + wait_s
             # A computer that stood still for long looks once more: the answer may have waited all the time. One look
             # alone may take as long as a stop waits.
-            while (now := self._transport.clock()) < deadline or now > looked + REPLY_WAIT_S:
+            while (now := self._transport.clock()) < deadline or now > looked + PATIENCE.reply_wait_s:
                 looked = now
                 with contextlib.suppress(*ignored):
                     self._receive()

@@ -15,23 +15,13 @@ from pathlib import Path
 from greywhale.base.errors import UserError, os_reason
 from greywhale.base.types import NotedProgress, show_no_progress
 from greywhale.board.device import Device
-from greywhale.board.record import (
-    BUSY_LEASE_MS,
-    LONGEST_S,
-    Recording,
-    check_request,
-    origin_of,
-    samples_of,
-    write_samples,
-)
+from greywhale.board.limits import RECORDING
+from greywhale.board.record import Recording, check_request, origin_of, samples_of, write_samples
 from greywhale.board.stream import Received, why_stopped
 from greywhale.board.upload import read_parameters
 from greywhale.files.log.episodes import next_episode
 from greywhale.files.log.writer import LogWriter
 from greywhale.protocol import schema
-
-# Of a log; a reader needs two to know how far they are apart.
-_LEAST_ROWS = 2
 
 
 class Wish(Enum):
@@ -86,12 +76,12 @@ def record_episodes(device: Device, plan: EpisodePlan, person: Person, progress:
     The numbers go on after those in the folder. UserError where the motors went off, a log cannot be written, or the
     link fails; the message says what was kept.
     """
-    check_request(LONGEST_S if plan.seconds is None else plan.seconds, plan.every, plan.enable)
+    check_request(RECORDING.longest_s if plan.seconds is None else plan.seconds, plan.every, plan.enable)
     origin = replace(origin_of(device, read_parameters(device), plan.every), task=plan.task)
     kept: list[Recording] = []
     discarded = 0
     with contextlib.ExitStack() as motors:
-        lease_ms = BUSY_LEASE_MS if plan.enable else 0  # to have a log on the disk may take a moment
+        lease_ms = RECORDING.busy_lease_ms if plan.enable else 0  # to have a log on the disk may take a moment
         received = motors.enter_context(samples_of(device, plan.every, lease_ms, plan.disengaged, progress))
         while True:
             path, full = next_episode(plan.folder), len(kept) == plan.count
@@ -153,9 +143,9 @@ def _record(
         wish = person.wish(True)
         if wish is not None:
             wishes.append(wish)
-        return bool(wishes) and log.rows >= _LEAST_ROWS
+        return bool(wishes) and log.rows >= 2  # a reader needs two to know how far they are apart
 
-    length = round(1000 * (LONGEST_S if plan.seconds is None else plan.seconds))
+    length = round(1000 * (RECORDING.longest_s if plan.seconds is None else plan.seconds))
     duration = write_samples(device, log, received, length, plan.enable, show_no_progress, ended=ended)
     return Recording(log.path, log.rows, log.dropped, duration), wishes[0] if wishes else None
 

@@ -10,14 +10,10 @@ from collections import deque
 
 import numpy as np
 
+from greywhale.board.limits import HUNTING
 from greywhale.board.stream import Received
 from greywhale.measure.swings import VIOLENT, turns_of
 from greywhale.protocol.firmware import ANGLE_LSB
-
-WINDOW_S = 0.8  # in which swings are counted
-LOOK_EVERY_SAMPLES = 40
-SETTLE_S = 0.4  # a follower may still be on its way for so long after its leader stopped
-STILL_RAD = 0.02  # a leader that moves less than this does not lead
 
 
 class Hunting(Exception):
@@ -37,17 +33,17 @@ class HuntingStop:
 
     def __call__(self, received: Received) -> None:
         self._last.append(received)
-        while received.elapsed - self._last[0].elapsed > 1000 * (WINDOW_S + SETTLE_S):
+        while received.elapsed - self._last[0].elapsed > 1000 * (HUNTING.window_s + HUNTING.settle_s):
             self._last.popleft()
         self._count += 1
-        if self._count % LOOK_EVERY_SAMPLES == 0:
+        if self._count % HUNTING.look_every_samples == 0:
             self._look()
 
     def _look(self) -> None:
         leader = np.array([one.sample.leader for one in self._last]) * ANGLE_LSB
         follower = np.array([one.sample.follower for one in self._last]) * ANGLE_LSB
-        judged = np.array([one.elapsed for one in self._last]) > self._last[-1].elapsed - 1000 * WINDOW_S
+        judged = np.array([one.elapsed for one in self._last]) > self._last[-1].elapsed - 1000 * HUNTING.window_s
         turned = turns_of(follower[judged], VIOLENT.band_rad)
-        hunting = (turned >= VIOLENT.turns) & (np.ptp(leader, axis=0) <= STILL_RAD)
+        hunting = (turned >= VIOLENT.turns) & (np.ptp(leader, axis=0) <= HUNTING.still_rad)
         if hunting.any():
             raise Hunting(int(np.argmax(np.where(hunting, turned, 0))))

@@ -16,6 +16,7 @@ import numpy as np
 from greywhale.base.errors import UserError
 from greywhale.base.types import Floats
 from greywhale.board.device import Device
+from greywhale.board.limits import LEAD
 from greywhale.board.refusal import RefusedError
 from greywhale.board.stream import why_stopped
 from greywhale.files.trajectory import Trajectory
@@ -29,23 +30,6 @@ from greywhale.protocol.firmware import (
     POINT_TICKS,
     STEP_LSB,
 )
-
-# The board can keep so many points.
-BOARD_ROOM_POINTS = 12
-# More at once would crowd samples out of the board's transmitter.
-_MOST_AT_ONCE_POINTS = 2
-# After so many ticks without an answer, the points since the last answer are sent again.
-_PATIENCE_TICKS = 100
-# An answer that takes nothing new shows a gap. But answers to points that were sent before the repair say the same.
-_RETRY_TICKS = 32
-# The largest speed from the arm's pose to a motion's first pose (rad/s).
-_APPROACH_RAD_S = 0.5
-# A follower this share of its tracking limit away from the reference slows the motion down; at the second it stops it.
-_SLOWS_LIMIT_SHARE, _STOPS_LIMIT_SHARE = 0.5, 0.8
-# The pace may change by so much from point to point: from full to none in a sixth of a second.
-_PACE_STEP = 0.1
-# If a motion takes this many times its length, the arm cannot follow it.
-_LONGEST_RATIO = 3.0
 
 
 def leadable(limits: Floats) -> Floats:
@@ -81,7 +65,7 @@ class Plan:
         first = np.clip(motion.angles[0], low, high)
         way = float(np.abs(first - start).max())
         # A minimum-jerk path is 1.875 times as fast in its middle as on average.
-        approach = int(np.ceil(1.875 * way / _APPROACH_RAD_S / POINT_S)) if way > STEP_LSB else 0
+        approach = int(np.ceil(1.875 * way / LEAD.approach_rad_s / POINT_S)) if way > STEP_LSB else 0
         share = minimum_jerk(np.arange(1, approach + 1) / max(approach, 1))
         times = np.arange(0.0, motion.duration_s + POINT_S, POINT_S)
         parts = [
@@ -124,7 +108,7 @@ class Leading:
         begun: schema.LeadReply,
         plan: Reference,
         tracking_limit: float,
-        ahead: int = BOARD_ROOM_POINTS,
+        ahead: int = LEAD.room_points,
     ) -> None:
         """`tracking_limit` in rad, 0 for none. The board is kept `ahead` points ahead: fewer let it hear sooner what
         has just been decided, and more wait longer for a host that is late.
@@ -171,10 +155,10 @@ class Leading:
         self._resting = sample.state is not schema.State.FOLLOWING
         self._hear(tick)
         self._watch(sample)
-        if self._taken < self._sent and self._waited(tick, _PATIENCE_TICKS):
+        if self._taken < self._sent and self._waited(tick, LEAD.patience_ticks):
             self._sent = self._taken
             self._note_progress(tick)
-        room = min(_MOST_AT_ONCE_POINTS, self._ahead - max(0, self._points_left(tick)) - (self._sent - self._taken))
+        room = min(LEAD.at_once_points, self._ahead - max(0, self._points_left(tick)) - (self._sent - self._taken))
         while room > 0 and self._make_points(self._sent + 1):
             if self._sent == self._taken:
                 self._note_progress(tick)
@@ -215,7 +199,7 @@ class Leading:
             self.starved += 1
         if taken > self._taken:
             self._note_progress(tick)
-        elif self._sent > taken and self._waited(tick, _RETRY_TICKS):
+        elif self._sent > taken and self._waited(tick, LEAD.retry_ticks):
             self._sent = taken
             self._note_progress(tick)
         self._taken, self._waiting, self._heard = taken, answer.waiting, tick
@@ -223,7 +207,7 @@ class Leading:
     def _watch(self, sample: schema.Sample) -> None:
         """Let the pace fall when a follower is far from the reference."""
         far = max(abs(a - b) for a, b in zip(sample.leader, sample.follower, strict=True)) * ANGLE_LSB / self._limit
-        self._wanted = min(1.0, max(0.0, (_STOPS_LIMIT_SHARE - far) / (_STOPS_LIMIT_SHARE - _SLOWS_LIMIT_SHARE)))
+        self._wanted = min(1.0, max(0.0, (LEAD.stops_share - far) / (LEAD.stops_share - LEAD.slows_share)))
 
     def _make_points(self, count: int) -> bool:
         """Make points until there are `count`; False when the plan ends before."""
@@ -232,13 +216,13 @@ class Leading:
             if self._resting:
                 self._points.append((0, 0, 0, 0))
                 continue
-            self._pace += min(max(self._wanted - self._pace, -_PACE_STEP), _PACE_STEP)
+            self._pace += min(max(self._wanted - self._pace, -LEAD.pace_step), LEAD.pace_step)
             self.slowest = min(self.slowest, self._pace)
             self._place = min(self._place + self._pace, end)
-            if len(self._points) > _LONGEST_RATIO * end + 1000:
+            if len(self._points) > LEAD.longest_ratio * end + 1000:
                 raise UserError(
                     f"{self._device.port}: the arm cannot follow this motion: it would take more than "
-                    f"{_LONGEST_RATIO:g} times its length; check that every joint moves freely, or lower its range."
+                    f"{LEAD.longest_ratio:g} times its length; check that every joint moves freely, or lower its range."
                 )
             target = np.round((self._plan.at(self._place) - self._origin) / STEP_LSB).astype(np.int64)
             step = np.clip(target - self._last_point, -LONGEST_STEP, LONGEST_STEP)

@@ -19,14 +19,12 @@ from typing import NamedTuple
 
 from greywhale.base import sockets, system
 from greywhale.base.errors import UserError
+from greywhale.board.limits import PATIENCE
 from greywhale.protocol.holder import describe
 from greywhale.protocol.lines import device_of
 
 STOP, CLUTCH = "stop", ("engage", "disengage")  # what a client may say
 NAMES_PER_PORT = 8  # any user may take some of them first
-# So many clients wait to be let in, and so many have said nothing yet.
-MOST_CLIENTS = 64
-_RETRY_S = 0.01  # until a full listener is tried again
 
 
 class Peer(NamedTuple):
@@ -74,7 +72,7 @@ def _take(listener: socket.socket, name: str) -> bool:
         if error.errno == errno.EADDRINUSE:
             return False
         raise
-    listener.listen(MOST_CLIENTS)
+    listener.listen(PATIENCE.most_clients)
     listener.setblocking(False)
     return True
 
@@ -112,7 +110,7 @@ def find(port: str, patience_s: float) -> tuple[socket.socket, Peer] | None:
         except BlockingIOError:
             if time.monotonic() > end:
                 return None
-        time.sleep(_RETRY_S)
+        time.sleep(0.01)  # the listener is full
     return None
 
 
@@ -163,7 +161,7 @@ class Clients:
                 client.close()
         if self._listener.fileno() in ready:
             self._silent += _accept(self._listener)
-        if len(self._silent) > MOST_CLIENTS:
+        if len(self._silent) > PATIENCE.most_clients:
             self._silent.pop(0).close()
         return stops
 

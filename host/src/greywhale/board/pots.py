@@ -15,13 +15,14 @@ from greywhale.board.device import Device
 from greywhale.board.refusal import lower_first, pot_name
 from greywhale.board.stream import stream
 from greywhale.protocol import schema
+from greywhale.protocol.firmware import CONVERSIONS, CONVERTER_COUNTS
 from greywhale.protocol.table import ParameterTable
 
 FOLLOWERS = range(4, 8)
 POTS = tuple(f"{side}{joint}" for side in ("leader", "follower") for joint in range(4))
 LOOK_SAMPLES = 100  # of a millisecond each
-FULL_SCALE = 1023  # counts of the 10-bit converter
-COUNT14_PER_COUNT = 16  # a reading is the sum of 4 conversions, times 4: 14 bits
+FULL_SCALE = CONVERTER_COUNTS - 1
+COUNT14_PER_COUNT = 4 * CONVERSIONS  # a reading is the sum of 4 conversions, times 4: 14 bits
 
 
 @dataclass(frozen=True)

@@ -23,9 +23,6 @@ from greywhale.protocol.transport import PortLostError
 
 Open = Callable[[str], Device]
 
-# A port that came back may not let itself be opened at once: its owner and its group come a moment later.
-_TRY_AGAIN_S = 0.2
-
 
 def record_through_losses(
     port: str,
@@ -81,7 +78,7 @@ def _come_back(name: str, lost: PortLostError, until_s: float, report: Progress,
             return open_device(name)
         except UserError as error:
             last = error.message
-        time.sleep(_TRY_AGAIN_S)
+        time.sleep(0.2)  # it may not let itself be opened at once: its owner and its group come a moment later
     raise UserError(f"{lost.message} It did not come back before the recording's end: {last}") from None
 
 

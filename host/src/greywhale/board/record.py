@@ -20,6 +20,7 @@ from greywhale.base.errors import BadUsage, UserError, require_between
 from greywhale.base.types import Floats, Progress, show_no_progress
 from greywhale.board.device import Device
 from greywhale.board.lead import Leading, Plan
+from greywhale.board.limits import RECORDING
 from greywhale.board.stream import Received, stream, why_stopped
 from greywhale.board.upload import read_parameters
 from greywhale.files.log.layout import Origin
@@ -31,25 +32,7 @@ from greywhale.protocol.table import ParameterTable
 
 Watch = Callable[[Received], None]
 
-# The motors go off this long after this host falls silent.
-LEASE_MS = 500
-# A computer that also searches may stand still for longer than one that only records.
-BUSY_LEASE_MS = 1000
-# With rarer samples the lease could not be renewed in time from the samples alone.
-_LONGEST_EVERY_ENABLED_TICKS = 100
-_LONGEST_EVERY_TICKS = 65535  # 16 bits of the request
-# With rarer samples a host that leads could not send its points in time.
-_LONGEST_EVERY_LED_TICKS = 4
-_SHORTEST_S = 0.01  # of a recording
-LONGEST_S = 86400.0  # a day
-# After a motion the log goes on for this long.
-REST_S = 0.3
-# Within this many ticks of enable the samples must show that the motors started.
-_ENABLE_TICKS = 1000
 _ROWS_PER_REPORT = 50  # rows between two reports of progress
-_POSE_SAMPLES = 21  # whose median is the pose
-# A recording whose end was lost is not what was asked for: more than this share of it, and than so many samples.
-_MOST_LOST_SHARE, _MOST_LOST_SAMPLES = 0.1, 10
 _MOVING = (schema.State.SOFT_START, schema.State.FOLLOWING)
 _VOLT = schema.Sample.LSB["voltage"]
 
@@ -117,7 +100,7 @@ def record(
     origin = origin_of(device, read_parameters(device), every)
     length = round(seconds * 1000)
     with LogWriter(path, origin) as log:
-        lease_ms = LEASE_MS if enable else 0
+        lease_ms = RECORDING.lease_ms if enable else 0
         with samples_of(device, every, lease_ms, disengaged, progress) as received:
             duration = write_samples(device, log, received, length, enable, progress)
     device.telemetry(0)
@@ -149,7 +132,7 @@ def record_led(
     *,
     patient: bool = True,
     watch: Watch | None = None,
-    lease_ms: int = LEASE_MS,
+    lease_ms: int = RECORDING.lease_ms,
 ) -> LedRecording:
     """Lead the arm along `motion`, from where it is, and record that; `table` is the table that runs, where it is
     known.
@@ -167,7 +150,7 @@ def record_led(
         received = stream(device, every)
         with device.leading(lease_ms) as begun:
             pose = np.array(begun.reference) * ANGLE_LSB
-            plan = Plan.of(motion, pose, limits, REST_S)
+            plan = Plan.of(motion, pose, limits, RECORDING.rest_s)
             leading = Leading(device, begun, plan, running.physical("tracking_limit") if patient else 0.0)
             received = _await_following(device, received, progress, leading)
             duration = _write_led(device, log, received, leading, progress, watch)
@@ -177,17 +160,17 @@ def record_led(
 
 def check_every_led(every: int) -> None:
     """Refuse samples that are too rare to lead by."""
-    if not 1 <= every <= _LONGEST_EVERY_LED_TICKS:
+    if not 1 <= every <= RECORDING.longest_every_led_ticks:
         raise BadUsage(
             f"one sample every {every} ticks is out of range; while this host leads it must be 1 to "
-            f"{_LONGEST_EVERY_LED_TICKS}."
+            f"{RECORDING.longest_every_led_ticks}."
         )
 
 
 def pose_of(device: Device) -> Floats:
     """The followers' angles now (4,), rad: the median of a few samples."""
     received = stream(device, 1)
-    angles = [next(received).sample.follower for _ in range(_POSE_SAMPLES)]
+    angles = [next(received).sample.follower for _ in range(21)]
     device.telemetry(0)
     pose: Floats = np.median(np.array(angles), axis=0) * ANGLE_LSB
     return pose
@@ -195,8 +178,8 @@ def pose_of(device: Device) -> Floats:
 
 def check_request(seconds: float, every: int, enable: bool) -> None:
     """Refuse a length, or samples so rare, that no board can record."""
-    require_between("the duration", seconds, "s", (_SHORTEST_S, LONGEST_S))
-    longest = _LONGEST_EVERY_ENABLED_TICKS if enable else _LONGEST_EVERY_TICKS
+    require_between("the duration", seconds, "s", (RECORDING.shortest_s, RECORDING.longest_s))
+    longest = RECORDING.longest_every_enabled_ticks if enable else RECORDING.longest_every_ticks
     if not 1 <= every <= longest:
         motors = " while the motors are on" if enable else ""
         raise BadUsage(f"one sample every {every} ticks is out of range; it must be 1 to {longest}{motors}.")
@@ -232,7 +215,7 @@ def _await_following(
             if leading is not None:
                 leading.keep_ahead(one.elapsed, one.sample)
         # Samples from before the request may still arrive, but not for long.
-        if state is schema.State.FAULT or (state not in _MOVING and (moved or one.elapsed > _ENABLE_TICKS)):
+        if state is schema.State.FAULT or (state not in _MOVING and (moved or one.elapsed > RECORDING.enable_ticks)):
             raise why_stopped(device)
     raise AssertionError("a stream of samples has no end")
 
@@ -277,7 +260,7 @@ def _end(device: Device, log: LogWriter, one: Received, length: int) -> None:
     every = log.origin.every_ticks or 1
     lost = min(one.lost, max(0, length - 1 - round(1000 * log.last_s)) // every)
     log.drop(lost)
-    if lost > _MOST_LOST_SAMPLES and lost * every > _MOST_LOST_SHARE * length:
+    if lost > RECORDING.most_lost_samples and lost * every > RECORDING.most_lost_share * length:
         raise UserError(
             f"{device.port}: the end of the recording was lost: after {log.last_s:g} of {length / 1000:g} s no sample "
             f"came for {(one.lost + 1) * every / 1000:g} s by the board's clock; check the cable and whether this "

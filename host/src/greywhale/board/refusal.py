@@ -5,8 +5,6 @@ from __future__ import annotations
 from greywhale.base.errors import UserError
 from greywhale.protocol import schema
 
-_ENABLE_ERROR_PER_COUNT = 1.0 / 32.0  # rad; see error_too_large in the declarations
-
 
 class RefusedError(UserError):
     """The board understood a request and said no; `code` is the reason."""
@@ -39,7 +37,7 @@ def _detail(nack: schema.Nack) -> str:
             return where + schema.LeadRefusal.of(low).description
         case schema.NackCode.ERROR_TOO_LARGE:
             more = " or more" if low == 0xFF else ""
-            return f"joint {high}, {low * _ENABLE_ERROR_PER_COUNT:.2f} rad{more}"
+            return f"joint {high}, {low / 32:.2f} rad{more}"
         case schema.NackCode.NOT_DISABLED:
             return f"it is in state {schema.State.of(detail).key}"
         case schema.NackCode.IN_FAULT:

@@ -22,15 +22,12 @@ from typing import Any, Self
 from greywhale.base import system
 from greywhale.base.errors import UserError, os_reason
 from greywhale.board import meeting
+from greywhale.board.limits import PATIENCE
 from greywhale.protocol.holder import describe
 from greywhale.protocol.lines import device_of
 from greywhale.protocol.transport import LENT
 
 NOTE = "It was stopped with `greywhale stop` from another terminal."
-# A session hears a stop within this time, or is itself stopped (Ctrl-Z) or hung.
-HEARD_S = 3.0
-# It then answers within this time, or says that the board does not confirm.
-_CONFIRM_S = 5.0
 # An interrupt that comes just before the main thread falls asleep in a system call is noticed only when the call ends.
 # So a signal that does nothing (system.WAKE) ends the call, again and again until the session does.
 _WAKE_S = 0.05
@@ -182,7 +179,7 @@ class Session:
             ended = self._wake_out in ready and b"x" in os.read(self._wake_out, 64)
             if clients.hear(ready):
                 self.asked = True
-                self._confirm_until = time.monotonic() + _CONFIRM_S
+                self._confirm_until = time.monotonic() + PATIENCE.confirm_s
                 self._end_motion()
             while clients.clutching:
                 self._use_clutch(*clients.clutching.pop())
@@ -201,7 +198,9 @@ class Session:
     def _answer(self, clients: meeting.Clients) -> None:
         """Tell those who asked what came of it, as soon as it is known."""
         if self.waiting and time.monotonic() > self._confirm_until:
-            problem = f"Switch the motors' supply off: {self.port} does not confirm the stop within {_CONFIRM_S:g} s."
+            problem = (
+                f"Switch the motors' supply off: {self.port} does not confirm the stop within {PATIENCE.confirm_s:g} s."
+            )
             self.confirm({"problem": problem})
         if self._confirmed.is_set():
             answer = {"pid": os.getpid(), **self._outcome, **({"goes_on": True} if self.goes_on else {})}
@@ -227,7 +226,7 @@ class Session:
         return _WAKE_S
 
 
-def ask_to_stop(port: str, wait_for_end: bool = False, heard_s: float = HEARD_S) -> dict[str, Any] | None:
+def ask_to_stop(port: str, wait_for_end: bool = False, heard_s: float = PATIENCE.heard_s) -> dict[str, Any] | None:
     """Stop the session that holds a port: its answer with "pid" and "state", and "goes_on" where its process does;
     None where no session holds the port.
 
@@ -242,7 +241,7 @@ def ask_to_stop(port: str, wait_for_end: bool = False, heard_s: float = HEARD_S)
             client.settimeout(heard_s)
             client.sendall(b"stop\n")
             answer = client.recv(1)  # it has heard
-            client.settimeout(_CONFIRM_S + heard_s)
+            client.settimeout(PATIENCE.confirm_s + heard_s)
             answer = answer and _read_line(client)
             while wait_for_end and client.recv(64):
                 pass
@@ -261,7 +260,7 @@ def ask_to_stop(port: str, wait_for_end: bool = False, heard_s: float = HEARD_S)
     return outcome
 
 
-def ask_for_clutch(port: str, action: str, heard_s: float = HEARD_S) -> int | None:
+def ask_for_clutch(port: str, action: str, heard_s: float = PATIENCE.heard_s) -> int | None:
     """Have the session that holds a port engage or disengage the clutch: its process, None where none holds it."""
     found = meeting.find(port, heard_s)
     if found is None:

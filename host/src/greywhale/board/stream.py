@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 from greywhale.base.errors import UserError
 from greywhale.board.device import Device
+from greywhale.board.limits import PATIENCE, RECORDING
 from greywhale.board.refusal import fault_text, lower_first
 from greywhale.protocol import schema
 
@@ -25,13 +26,6 @@ OF_THE_MOTION = (
 )
 
 _TICK_COUNTS = 1 << 32  # after so many the board counts its ticks from 0 again
-# As long as the longest recording: no board that was heard all the time is silent for so many ticks.
-_LONGEST_STEP_TICKS = 86_400_000
-# No sample for this long, and at least five sample periods, means that something is wrong.
-_SILENCE_S = 2.0
-_RENEWALS_PER_LEASE = 4  # so three may be lost
-# A host that looks at the port more seldom was stopped itself (Ctrl-Z, a sleeping laptop).
-_PAUSE_S = 1.0
 
 
 class LeaseLostError(UserError):
@@ -60,7 +54,7 @@ def stream(device: Device, every: int) -> Iterator[Received]:
 
 
 def _samples(device: Device, every: int) -> Iterator[Received]:
-    silence_s = max(_SILENCE_S, 5 * every / 1000)
+    silence_s = max(PATIENCE.silence_s, 5 * every / 1000)
     last: int | None = None
     elapsed = 0
     renewed: int | None = None
@@ -69,7 +63,7 @@ def _samples(device: Device, every: int) -> Iterator[Received]:
     while True:
         samples = device.samples()
         now = device.clock()
-        if now > looked + _PAUSE_S:
+        if now > looked + PATIENCE.pause_s:
             heard += now - looked  # this host stood still, not the board
             paused = True
         looked = now
@@ -78,7 +72,7 @@ def _samples(device: Device, every: int) -> Iterator[Received]:
         if samples:
             newest = samples[-1].tick
             renewed = samples[0].tick if renewed is None else renewed
-            if device.lease_ms and (newest - renewed) % _TICK_COUNTS >= device.lease_ms // _RENEWALS_PER_LEASE:
+            if device.lease_ms and (newest - renewed) % _TICK_COUNTS >= device.lease_ms // PATIENCE.renewals_per_lease:
                 device.renew()
                 renewed = newest
         for sample in samples:
@@ -90,7 +84,7 @@ def _samples(device: Device, every: int) -> Iterator[Received]:
                 raise UserError(
                     f"{device.port}: the board's clock went backwards: it restarted in the middle; try again."
                 )
-            if step > _LONGEST_STEP_TICKS:
+            if step > 1000 * RECORDING.longest_s:  # no board that was heard all the time is silent for so long
                 raise UserError(
                     f"{device.port}: the board's clock jumped by {step / 1000:.3f} s between two samples, so the times "
                     "of what follows are not known; reset the board and try again."

@@ -14,13 +14,12 @@ from typing import TypedDict
 from greywhale.base.errors import UserError
 from greywhale.base.types import Crc, Progress, show_no_progress
 from greywhale.board.device import Device
+from greywhale.board.limits import PATIENCE
 from greywhale.board.refusal import RefusedError
 from greywhale.files import controller as controller_file
 from greywhale.protocol import schema
 from greywhale.protocol.table import ParameterTable
 
-# A whole set takes 0.7 s to write into the EEPROM of an Arduino.
-SAVE_WAIT_S = 10.0
 _POLL_S = 0.02  # between two looks whether the board has done it
 
 
@@ -84,7 +83,10 @@ def change_parameters(
 
 
 def upload_set(
-    device: Device, table: ParameterTable, report: Progress = show_no_progress, save_wait_s: float = SAVE_WAIT_S
+    device: Device,
+    table: ParameterTable,
+    report: Progress = show_no_progress,
+    save_wait_s: float = PATIENCE.save_wait_s,
 ) -> None:
     """Stage, apply and save a whole set, then check that the board runs it. A save may take `save_wait_s`."""
     _apply(device, table, report, save_wait_s)
@@ -96,7 +98,7 @@ def upload_set(
 
 def run_set(device: Device, table: ParameterTable, report: Progress = show_no_progress) -> None:
     """Run a whole set without storing it: after its next start, the board runs the stored set again."""
-    _apply(device, table, report, SAVE_WAIT_S)
+    _apply(device, table, report, PATIENCE.save_wait_s)
     _prove(device, table)
 
 
@@ -112,7 +114,7 @@ def staging(device: Device, table: ParameterTable) -> Iterator[int]:
         yield index + 1
 
 
-def apply_staged(device: Device, table: ParameterTable, save_wait_s: float = SAVE_WAIT_S) -> None:
+def apply_staged(device: Device, table: ParameterTable, save_wait_s: float = PATIENCE.save_wait_s) -> None:
     """Let the board run the staged set, which must be `table`; the motors must be off."""
     _when_not_saving(device, save_wait_s, lambda: device.ask(schema.ParamApplyRequest(table.crc)))
 

@@ -12,6 +12,7 @@ from greywhale.base.errors import MOST_SEED
 from greywhale.base.formats.whole import refuse_inputs
 from greywhale.base.study import LocalWorkers
 from greywhale.base.telling import Step, Telling
+from greywhale.board.limits import RECORDING
 from greywhale.cli.countdown import warn_page
 from greywhale.cli.output import FILE, json_option, option, overwrite_option, port_option, progress, show, tell
 from greywhale.files.outputs import require_new
@@ -20,9 +21,6 @@ from greywhale.protocol.ports import choose_port
 if TYPE_CHECKING:
     from greywhale.adapt import AdaptationResult
 
-# The longest that a session may last (s).
-MOST_SECONDS = 86_400.0
-
 
 @click.command("adapt")
 @click.argument("model", type=FILE)
@@ -30,7 +28,7 @@ MOST_SECONDS = 86_400.0
 @option(
     "--seconds",
     "-s",
-    type=click.FloatRange(1.0, MOST_SECONDS),
+    type=click.FloatRange(1.0, RECORDING.longest_s),
     default=600.0,
     help="Length of the work, by the board's clock.",
 )

@@ -9,11 +9,10 @@ import click
 from greywhale.base.errors import BadUsage, counted, require_between
 from greywhale.base.telling import Column, Row, Sentences, Step, Table, Telling
 from greywhale.board.doctor import Finding, Verdict, examine, worst
-from greywhale.board.doctor.examine import LINK_S
+from greywhale.board.limits import DOCTOR
 from greywhale.cli.output import FILE, OnPort, json_option, option, port_option, progress, require_supply, show
 from greywhale.protocol.ports import choose_port
 
-LONGEST_S = 3600.0  # of the look at the link
 _COLUMNS = (Column(width=5, left=True), Column(width=14, left=True), Column(width=1, left=True))
 
 
@@ -25,7 +24,7 @@ class DoctorAnswer(OnPort):
 @click.command("doctor")
 @port_option
 @option("--params", type=FILE, metavar="FILE", help="A parameter file that the board should run.")
-@option("--seconds", default=LINK_S, help="How long the link is loaded.")
+@option("--seconds", default=DOCTOR.link_s, help="How long the link is loaded.")
 @option("--supply", type=float, metavar="VOLTS", help="What you measured at the motors' supply.")
 @option(
     "--image", is_flag=True, help="Also read the firmware back and compare it with the shipped one; the board restarts."
@@ -47,7 +46,7 @@ def command(
 
     The motors stay off. Keep both arms still. The exit code is 1 when something must be mended.
     """
-    require_between("--seconds", seconds, "", (0.5, LONGEST_S))
+    require_between("--seconds", seconds, "", (0.5, 3600.0))
     if supply is not None:
         require_supply(supply)
     if hex_file is not None and not image:

@@ -13,7 +13,8 @@ from greywhale.cli import completion
 from greywhale.cli.output import FILE, json_option, option, overwrite_option, progress, show
 from greywhale.files.arm import load_arm
 from greywhale.files.log import Log, read_log
-from greywhale.files.log.selection import MOST_USED_S, informative
+from greywhale.files.log.limits import SELECTION
+from greywhale.files.log.selection import informative
 from greywhale.files.outputs import require_folder, require_new, require_no_files
 from greywhale.files.parameter_file import load_table
 from greywhale.identify import METHODS, identify
@@ -114,5 +115,7 @@ def _read(path: Path, notes: list[str]) -> Log:
     used = informative(whole)
     if used is not whole:
         length = whole.time[-1] - whole.time[0]
-        notes.append(f"{path}: of {length:.0f} s the {MOST_USED_S:g} s that show most about the arm are used.")
+        notes.append(
+            f"{path}: of {length:.0f} s the {SELECTION.most_used_s:g} s that show most about the arm are used."
+        )
     return used

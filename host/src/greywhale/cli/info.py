@@ -11,7 +11,7 @@ from greywhale.base.errors import BadUsage, counted
 from greywhale.base.telling import Column, Row, Step, Table, Telling
 from greywhale.base.types import Crc
 from greywhale.board.device import Device
-from greywhale.board.doctor.board import EEPROM_WRITES
+from greywhale.board.limits import DOCTOR
 from greywhale.board.pots import POTS, PotReadings, read_pots
 from greywhale.board.refusal import fault_text, pot_name
 from greywhale.board.upload import read_parameters
@@ -162,7 +162,7 @@ def _tell(device: Device, hello: schema.HelloReply, status: schema.StatusReply, 
             f"{counted(status.telemetry_dropped, 'sample')} dropped",
         ),
         ("rules", f"none fired {counted(status.no_rule, 'time')}" if status.no_rule else "one always fired"),
-        ("saves", f"{status.saves:,}; the EEPROM is made for {EEPROM_WRITES:,}"),
+        ("saves", f"{status.saves:,}; the EEPROM is made for {DOCTOR.eeprom_writes:,}"),
         *(("pots", line) for line in _tell_pots(pots)),
     ]
     return Telling((Table(_COLUMNS, [Row(row) for row in rows]),), [Step("doctor", "Look at what may be wrong")])

@@ -17,7 +17,8 @@ from greywhale.base.errors import UserError
 from greywhale.base.types import Floats, Progress
 from greywhale.board.device import Device, hold_ctrl_c
 from greywhale.board.hunting_stop import Hunting, HuntingStop
-from greywhale.board.record import BUSY_LEASE_MS, pose_of, record_led
+from greywhale.board.limits import RECORDING
+from greywhale.board.record import pose_of, record_led
 from greywhale.board.stream import OF_THE_MOTION, LeaseLostError
 from greywhale.board.upload import read_parameters, run_set, upload_set
 from greywhale.commission.sinking import describe_sinking
@@ -117,7 +118,7 @@ class ArmOnPort:
         try:
             record_led(
                 self.device, path, motion, progress=self._progress, table=table, patient=patient, watch=watch,
-                lease_ms=BUSY_LEASE_MS,
+                lease_ms=RECORDING.busy_lease_ms,
             )  # fmt: skip
         except Hunting as hunting:
             self.device.telemetry(0)

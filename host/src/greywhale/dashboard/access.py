@@ -12,8 +12,8 @@ import threading
 import time
 from collections.abc import Callable
 
-TICKET_LASTS_S = 600.0  # to paste an address, also through a tunnel from another machine
-MOST_TICKETS = 16  # kept unused; older ones are forgotten
+from greywhale.dashboard.limits import REQUESTS
+
 ANEW = "press Enter in the terminal of `greywhale dashboard`, and open the address that it prints then."
 _SECRET_BYTES = 24  # of a token or a ticket: nobody guesses 192 bits
 
@@ -32,7 +32,7 @@ class Access:
         ticket = secrets.token_urlsafe(_SECRET_BYTES)
         with self._lock:
             self._tickets[ticket] = self._clock()
-            for oldest in list(self._tickets)[:-MOST_TICKETS]:
+            for oldest in list(self._tickets)[: -REQUESTS.most_tickets]:
                 del self._tickets[oldest]
         return f"http://127.0.0.1:{self._port}/#ticket={ticket}"
 
@@ -40,6 +40,6 @@ class Access:
         """The token for a ticket, which is void from now on; None for one that is void."""
         with self._lock:
             known = next((one for one in self._tickets if hmac.compare_digest(one.encode(), ticket.encode())), None)
-            if known is None or self._clock() > self._tickets.pop(known) + TICKET_LASTS_S:
+            if known is None or self._clock() > self._tickets.pop(known) + REQUESTS.ticket_lasts_s:
                 return None
         return self.token

@@ -18,8 +18,8 @@ from greywhale.board.calibrate.earlier import earlier
 from greywhale.dashboard import arm_answers
 from greywhale.dashboard.bench import BenchControls
 from greywhale.dashboard.folder import FileFacts, Folder
-from greywhale.dashboard.guard import MOST_UPLOAD_BYTES
 from greywhale.dashboard.jobs import Jobs
+from greywhale.dashboard.limits import REQUESTS
 from greywhale.dashboard.predict import predict  # here, for a server that imports later lets its board wait
 from greywhale.dashboard.relay import Relay
 from greywhale.dashboard.samples import samples_of_log
@@ -120,7 +120,7 @@ class Answers:
             "files": self.folder.files(),
             "controllers": controller_names(),
             "arms": arm_names(),
-            "most_upload_bytes": MOST_UPLOAD_BYTES,
+            "most_upload_bytes": REQUESTS.most_upload_bytes,
         }
 
     def history(self, tick: str | None) -> bytes:

@@ -20,16 +20,9 @@ from uvicorn.protocols.http.h11_impl import H11Protocol
 from greywhale.base import sockets, system
 from greywhale.dashboard.bucket import Bucket
 from greywhale.dashboard.door import Door
+from greywhale.dashboard.limits import CONNECTIONS
 
-# Connections that the system keeps until they are accepted, at no cost here. With fewer, a new page would have to try
-# again a second later.
-BACKLOG = 4096
-# Connections to accept. At this pace a connection that sends something at once is heard before later ones push it out.
-ACCEPTED_A_SECOND, ACCEPTED_AT_ONCE = 1000.0, 16.0
-# Connections to hand to uvicorn: a program may open one for each of its requests, of which 100 a second are answered.
-HANDED_A_SECOND, HANDED_AT_ONCE = 200.0, 64.0
 _AGAIN_S = 0.01  # until the next try, while the door or a bucket has no room
-WITHOUT_DESCRIPTORS_S = 1.0  # until the next try, while the system has no descriptors: some are closed within seconds
 _ROOT = 0  # user id
 _NO_DESCRIPTORS = (errno.EMFILE, errno.ENFILE, errno.ENOBUFS, errno.ENOMEM)
 
@@ -100,8 +93,8 @@ class Server(uvicorn.Server):
         self._listener: socket.socket | None = None
         self._reserve = -1  # a descriptor to free when the system has no others left
         self._spoken: deque[Arrival] = deque()
-        self._accepted = Bucket(ACCEPTED_A_SECOND, ACCEPTED_AT_ONCE)
-        self._handed = Bucket(HANDED_A_SECOND, HANDED_AT_ONCE)
+        self._accepted = Bucket(*CONNECTIONS.accepted)
+        self._handed = Bucket(*CONNECTIONS.handed)
         self._handing: set[asyncio.Task[None]] = set()
 
     async def startup(self, sockets: list[socket.socket] | None = None) -> None:
@@ -110,7 +103,7 @@ class Server(uvicorn.Server):
         if system.WAITS_FOR_SOCKETS and sockets:
             [self._listener] = sockets
             self._listener.setblocking(False)
-            self._listener.listen(BACKLOG)
+            self._listener.listen(CONNECTIONS.backlog)
             self._reserve = os.open(os.devnull, os.O_RDONLY)
             self._listen()
 
@@ -168,7 +161,7 @@ class Server(uvicorn.Server):
         with contextlib.suppress(OSError):
             listener.accept()[0].close()
         self._reserve = os.open(os.devnull, os.O_RDONLY)
-        self._rest(WITHOUT_DESCRIPTORS_S)
+        self._rest(CONNECTIONS.without_descriptors_s)
 
     def _hear(self, arrival: Arrival) -> None:
         """Note that a connection has sent something, or has ended; else wait for either."""

@@ -12,16 +12,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol
 
-# A page that loads opens six connections without the token, and some browsers open a few more for later use.
-MOST_STRANGERS = 64
-FEWEST_STRANGERS = 6  # one loading page; also where the system has few descriptors
-MOST_KNOWN = 64  # a page has two, and more for a moment while it asks for something
-# A stranger is closed after this time: a browser that opens a connection beforehand uses it within seconds.
-PATIENCE_S = 10.0
-# A stranger that asks for something has this time to get it, in which it is not closed for another one.
-GRACE_S = 2.0
-# A stranger that has just come in has this time to say what it wants: a browser takes less than a millisecond.
-MOMENT_S = 0.05
+from greywhale.dashboard.limits import CONNECTIONS
 
 Address = tuple[str, int]
 logger = logging.getLogger(__name__)
@@ -57,8 +48,8 @@ class Door:
 
     def __init__(
         self,
-        most_strangers: int = MOST_STRANGERS,
-        most_known: int = MOST_KNOWN,
+        most_strangers: int = CONNECTIONS.most_strangers,
+        most_known: int = CONNECTIONS.most_known,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
         self._most_strangers, self._most_known, self._clock = most_strangers, most_known, clock
@@ -79,9 +70,9 @@ class Door:
         now_s = self._clock()
         strangers = self._strangers.values()
         waiting_for_nothing = [
-            one.visitor for one in strangers if one.since_s <= now_s - MOMENT_S and not one.visitor.waits
+            one.visitor for one in strangers if one.since_s <= now_s - CONNECTIONS.moment_s and not one.visitor.waits
         ]
-        here_long_enough = [one.visitor for one in strangers if one.since_s <= now_s - GRACE_S]
+        here_long_enough = [one.visitor for one in strangers if one.since_s <= now_s - CONNECTIONS.grace_s]
         may_go = [*waiting_for_nothing, *here_long_enough]
         if not may_go:
             return False
@@ -96,7 +87,7 @@ class Door:
     def keep_fewer(self) -> bool:
         """Let half as many strangers stay from now on, as the system has no descriptors left; False where few do."""
         self._forget_gone()
-        self._most_strangers = max(FEWEST_STRANGERS, len(self._strangers) // 2)
+        self._most_strangers = max(CONNECTIONS.fewest_strangers, len(self._strangers) // 2)
         too_many = list(self._strangers.values())[: -self._most_strangers]
         for stranger in too_many:
             stranger.visitor.close()
@@ -122,7 +113,7 @@ class Door:
     def look(self) -> None:
         """Close the strangers that had their time and wait for no answer."""
         self._forget_gone()
-        then_s = self._clock() - PATIENCE_S
+        then_s = self._clock() - CONNECTIONS.patience_s
         for stranger in self._strangers.values():
             if stranger.since_s < then_s and not stranger.visitor.busy:
                 stranger.visitor.close()

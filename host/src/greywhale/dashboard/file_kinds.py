@@ -10,6 +10,7 @@ from typing import IO
 from greywhale.base.errors import UserError
 from greywhale.base.formats import toml_file
 from greywhale.base.formats.kinds import kind_of
+from greywhale.dashboard.limits import REQUESTS
 from greywhale.files.log.layout import TITLE
 
 # Of files whose content tells no kind.
@@ -17,9 +18,6 @@ _BY_END = {".png": "picture", ".svg": "picture", ".pdf": "picture", ".html": "re
 # The ends of files that a verb takes, so that a page may bring them.
 KNOWN_ENDS = (".csv", ".toml", ".hex")
 KINDS_IN_WORDS = "a log or motion (.csv), an arm, model, controller or backup (.toml), firmware (.hex)"
-# Larger tables are nobody's that a page would name.
-_LARGEST_TABLE_BYTES = 1 << 20
-_FIRST_BYTES, _LINE_BYTES = 200, 4000  # of a table's first line, and of one in its header
 
 
 def kind_of_file(path: Path) -> str:
@@ -39,19 +37,19 @@ def kind_of_content(end: str, file: IO[bytes]) -> str:
             return next(_kinds_of_csv(file), "")
         if end == ".hex":
             return "firmware" if file.read(1) == b":" else ""
-        table = file.read(_LARGEST_TABLE_BYTES + 1)
-        if end == ".toml" and len(table) <= _LARGEST_TABLE_BYTES:
+        table = file.read(REQUESTS.largest_table_bytes + 1)
+        if end == ".toml" and len(table) <= REQUESTS.largest_table_bytes:
             kind = kind_of(toml_file.parse(table.decode("utf-8"), "the table"))
             return "" if kind is None else kind.name.lower()
     return ""
 
 
 def _kinds_of_csv(file: IO[bytes]) -> Iterator[str]:
-    first = _line(file, _FIRST_BYTES)
+    first = _line(file, 200)
     if TITLE in first:
         yield "log"
     while first.startswith("#"):
-        first = _line(file, _LINE_BYTES)
+        first = _line(file, 4000)
     if first.startswith("time_s,leader_0"):
         yield "motion"
 

@@ -16,8 +16,8 @@ from greywhale.base.errors import BadUsage, UserError, cut, os_reason
 from greywhale.base.formats.draft import sync_folder
 from greywhale.base.formats.whole import write_whole
 from greywhale.dashboard.file_kinds import KINDS_IN_WORDS, KNOWN_ENDS, kind_of_content, kind_of_file
+from greywhale.dashboard.limits import REQUESTS
 
-MOST_FILES = 1000  # that are looked at, in and below the folder
 # The fate of a file that comes where one of its name is: it is refused, takes the place, or gets the next free name.
 IfThere = Literal["refuse", "replace", "rename"]
 IF_THERE: tuple[IfThere, ...] = ("refuse", "replace", "rename")
@@ -69,7 +69,7 @@ class Folder:
     def files(self) -> list[FileFacts]:
         """The files that verbs could take, here and one folder down, by name."""
         found: list[FileFacts] = []
-        for path in sorted([*self.path.glob("*"), *self.path.glob("*/*")])[:MOST_FILES]:
+        for path in sorted([*self.path.glob("*"), *self.path.glob("*/*")])[: REQUESTS.most_files]:
             name, kind, size, changed_s = str(path.relative_to(self.path)), "", 0, 0.0
             if self._is_hidden(path):
                 continue

@@ -16,18 +16,12 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from greywhale.dashboard.access import ANEW
 from greywhale.dashboard.bucket import Bucket
 from greywhale.dashboard.door import Door
+from greywhale.dashboard.limits import REQUESTS
 
 SUBPROTOCOL = "greywhale"
 TOKEN_PREFIX = "token."
 ENTRY = "/enter"  # where a ticket is exchanged for the token
 UPLOAD = "/file"  # whose body may be longer
-MOST_BODY_BYTES = 1 << 20  # of a request: the words of a verb take 100 kB at most
-MOST_UPLOAD_BYTES = 1 << 27  # a log of ten minutes has some 70 MB
-# Of all who have the token. A page asks for some ten things at its start, and then for one at a time.
-REQUESTS_A_SECOND, REQUESTS_AT_ONCE = 100.0, 300.0
-# Of all others. Whoever comes too early waits, for a page that loads has no token yet.
-STRANGERS_A_SECOND, STRANGERS_AT_ONCE = 100.0, 100.0
-_LOOK_AGAIN_S = 0.05  # until a stranger that came too early is looked at again
 
 Refusal = tuple[int, str]
 POLICY = "; ".join(
@@ -63,8 +57,8 @@ class Guard:
         self._origins = {f"http://{host}" for host in self._hosts}
         self._is_public = is_public
         self.door = door
-        self._owners = Bucket(REQUESTS_A_SECOND, REQUESTS_AT_ONCE)
-        self._strangers = Bucket(STRANGERS_A_SECOND, STRANGERS_AT_ONCE)
+        self._owners = Bucket(*REQUESTS.owners)
+        self._strangers = Bucket(*REQUESTS.strangers)
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         if scope["type"] == "lifespan":
@@ -99,7 +93,7 @@ class Guard:
                 return 503, "Too many pages are open; close some."
             return None if self._owners.take() else (429, "Too many requests; wait a second.")
         while not self._strangers.take():
-            await asyncio.sleep(_LOOK_AGAIN_S)
+            await asyncio.sleep(0.05)
             if not self.door.is_there(scope["client"]):
                 return 408, "The connection was closed."
         if scope["type"] == "http" and (scope["method"], scope["path"]) == ("POST", ENTRY):
@@ -123,14 +117,14 @@ def _token(scope: Scope) -> bytes:
 def _most_bytes(scope: Scope) -> int:
     """The most that the body of a request may have."""
     uploads = scope["type"] == "http" and (scope["method"], scope["path"]) == ("PUT", UPLOAD)
-    return MOST_UPLOAD_BYTES if uploads else MOST_BODY_BYTES
+    return REQUESTS.most_upload_bytes if uploads else REQUESTS.most_body_bytes
 
 
 def _length(scope: Scope) -> int:
     """The length of the body that a request states; one that states none is counted while it comes."""
     for name, value in scope["headers"]:
         if name == b"content-length":
-            return int(value) if value.isdigit() else MOST_UPLOAD_BYTES + 1
+            return int(value) if value.isdigit() else REQUESTS.most_upload_bytes + 1
     return 0
 
 

@@ -7,11 +7,10 @@ import threading
 import numpy as np
 
 from greywhale.base.types import Integers
+from greywhale.dashboard.limits import SAMPLES
 from greywhale.protocol import schema
 from greywhale.protocol.frames import OVERHEAD
 
-# Ten minutes of every tick.
-MOST_SAMPLES = 600_000
 # COBS adds one byte to so short a frame whatever it holds, and the zero ends it: all samples are equally long.
 FRAME_BYTES = schema.Sample.SIZE + OVERHEAD + 2
 
@@ -19,7 +18,7 @@ FRAME_BYTES = schema.Sample.SIZE + OVERHEAD + 2
 class History:
     """A ring of sample frames; one thread adds to it, and any may read."""
 
-    def __init__(self, most: int = MOST_SAMPLES) -> None:
+    def __init__(self, most: int = SAMPLES.history) -> None:
         self._most = most
         self._frames = bytearray(most * FRAME_BYTES)
         self._ticks: Integers = np.zeros(most, dtype=np.uint32)

@@ -24,14 +24,11 @@ from greywhale.base import processes
 from greywhale.base.errors import INTERRUPTED, printable
 from greywhale.board.refusal import upper_first
 from greywhale.dashboard.client import Client
-from greywhale.dashboard.lending import MOST_SAMPLES, LentEnd
+from greywhale.dashboard.lending import LentEnd
+from greywhale.dashboard.limits import JOBS, SAMPLES
 from greywhale.dashboard.outbox import Outbox
 from greywhale.dashboard.relay import Relay, Wish
 from greywhale.protocol.socket_line import PIECE_BYTES
-
-# A verb that was interrupted stops motors and writes its files; one that does not end by then hangs.
-END_WAIT_S = 15.0
-MOST_SAID_LINES = 200  # kept of a verb's output, the newest
 
 
 @dataclass(frozen=True)
@@ -123,7 +120,7 @@ class Job:
                 failed.callback(own.close)
                 descriptors.append(theirs.fileno())
                 line = str(theirs.fileno())
-                client = Client(Outbox(self._wake, MOST_SAMPLES), self.facts["verb"], self.facts["id"], self._interrupt)
+                client = Client(Outbox(self._wake, SAMPLES.lent), self.facts["verb"], self.facts["id"], self._interrupt)
                 # From now on a stop, or the page's end, is heard.
                 self._line = LentEnd(self.board.relay, own, client, self.board.wish)
                 failed.callback(self._line.close)
@@ -162,7 +159,7 @@ class Job:
             self._stopping = True
             if self._started and self.running:
                 self._process.send_signal(signal.SIGINT)
-            self._kill_at = self._kill_at or time.monotonic() + END_WAIT_S
+            self._kill_at = self._kill_at or time.monotonic() + JOBS.end_wait_s
         self._wake()
 
     def say(self, line: str) -> None:
@@ -222,7 +219,7 @@ class Job:
 
     def _take_said(self, data: bytes) -> None:
         said = [printable(line) for line in self._lines("said", data)]
-        self.facts["said"] = [*self.facts["said"], *said][-MOST_SAID_LINES:]
+        self.facts["said"] = [*self.facts["said"], *said][-JOBS.most_said_lines :]
         self._changed(self)
 
     def _take_told(self, data: bytes) -> None:

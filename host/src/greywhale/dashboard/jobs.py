@@ -12,11 +12,9 @@ from greywhale.base.errors import BadUsage, UserError, cut
 from greywhale.dashboard import arm_answers
 from greywhale.dashboard.folder import Folder
 from greywhale.dashboard.job import Facts, Job, Lent, Taken
+from greywhale.dashboard.limits import JOBS
 from greywhale.dashboard.relay import Relay, Wish
 from greywhale.dashboard.verbs import VerbFacts, command_line
-
-MOST_RUNNING_JOBS = 4  # each may keep a processor busy
-MOST_KEPT_JOBS = 50  # the oldest that have ended are forgotten
 
 
 class Listed(TypedDict):
@@ -78,8 +76,8 @@ class Jobs:
         with self._lock, ExitStack() as failed:
             if self._closed:
                 raise UserError("the dashboard ends; start it again.")
-            if sum(job.running for job in self._jobs) >= MOST_RUNNING_JOBS:
-                raise UserError(f"{MOST_RUNNING_JOBS} verbs are running; wait for the end of one, or stop it.")
+            if sum(job.running for job in self._jobs) >= JOBS.most_running:
+                raise UserError(f"{JOBS.most_running} verbs are running; wait for the end of one, or stop it.")
             board: Lent | Taken | None = None
             if verb["board"] != "none":
                 self._require_board(wish, there=verb["board"] == "lent")
@@ -130,7 +128,7 @@ class Jobs:
     def _keep(self, job: Job) -> None:
         """List a job; of the others the oldest that have ended are forgotten."""
         ended = [one for one in self._jobs if not one.running]
-        forgotten = ended[: max(0, len(self._jobs) + 1 - MOST_KEPT_JOBS)]
+        forgotten = ended[: max(0, len(self._jobs) + 1 - JOBS.most_kept)]
         self._jobs = [*(one for one in self._jobs if one not in forgotten), job]
 
     def _require_board(self, wish: Wish, there: bool) -> None:

@@ -9,14 +9,9 @@ from __future__ import annotations
 from enum import Enum, auto
 
 from greywhale.dashboard.client import Client
+from greywhale.dashboard.limits import BOARD
 from greywhale.protocol import schema
 
-# The motors go off when the page that drives says nothing for so long; the board's lease ends them if this host hangs.
-# A page may be busy for some tenths of a second, and is not gone. One that is closed is noticed at once.
-SILENCE_S = 0.5
-LEASE_MS = 250
-RENEW_S = 0.06  # so three renewals may be lost
-NO_RENEWAL_S = 0.1  # a board that sent no sample for so long may have restarted: its lease is not renewed
 _AT_REST = (schema.State.DISABLED, schema.State.FAULT)
 
 
@@ -63,12 +58,12 @@ class Lease:
         if self.page is None:
             return Due.NOTHING
         if self.is_short:
-            if now_s > self._begun_s + LEASE_MS / 1000:  # the board has ended it, or never began
+            if now_s > self._begun_s + BOARD.lease_ms / 1000:  # the board has ended it, or never began
                 self.end()
             return Due.NOTHING
-        if now_s > self.page.seen_s + SILENCE_S:
+        if now_s > self.page.seen_s + BOARD.page_silence_s:
             return Due.STOP
-        if now_s >= self._renewed_s + RENEW_S and now_s <= heard_s + NO_RENEWAL_S:
+        if now_s >= self._renewed_s + BOARD.renew_s and now_s <= heard_s + BOARD.no_renewal_s:
             self._renewed_s = now_s
             return Due.RENEWAL
         return Due.NOTHING

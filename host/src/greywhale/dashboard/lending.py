@@ -9,15 +9,12 @@ from greywhale.dashboard.client import Client
 from greywhale.dashboard.relay import Relay, Wish
 from greywhale.protocol.socket_line import PIECE_BYTES
 
-# A verb may compute for a minute before it reads; it loses no sample that a port would have kept.
-MOST_SAMPLES = 60_000
-
 
 class LentEnd:
     """Never waits: whoever calls it selects on `connection`."""
 
     def __init__(self, relay: Relay, connection: socket.socket, client: Client, wish: Wish) -> None:
-        """A UserError says why the verb, a client that may get `MOST_SAMPLES`, is not to begin."""
+        """A UserError says why the verb, a client that may get the limit's `lent` samples, is not to begin."""
         self._relay = relay
         self._connection = connection
         connection.setblocking(False)

@@ -7,21 +7,19 @@ from collections import deque
 from collections.abc import Callable
 from typing import Any
 
+from greywhale.dashboard.limits import SAMPLES
+
 Message = dict[str, Any]
-# A page that has not read for so many ticks loses the oldest pictures; the history has them.
-MOST_SAMPLES = 10_000
-# A client that takes no answers is beyond help.
-MOST_ANSWERS = 4096
 
 
 class Outbox:
     """Filled by the relay and emptied by the client's own sender, each in its own thread."""
 
-    def __init__(self, notify: Callable[[bool], None], most_samples: int = MOST_SAMPLES) -> None:
+    def __init__(self, notify: Callable[[bool], None], most_samples: int = SAMPLES.outbox) -> None:
         """`notify` is called from any thread when something waits that did not before: with True where it is urgent."""
         self._notify = notify
         self._samples: deque[bytes] = deque(maxlen=most_samples)
-        self._answers: deque[bytes | Message] = deque(maxlen=MOST_ANSWERS)
+        self._answers: deque[bytes | Message] = deque(maxlen=SAMPLES.most_answers)
         self._lock = threading.Lock()
 
     def add_sample(self, frame: bytes) -> None:

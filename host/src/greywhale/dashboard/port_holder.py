@@ -12,18 +12,11 @@ from greywhale.board.device import Device
 from greywhale.board.greeting import FirmwareError
 from greywhale.board.refusal import upper_first
 from greywhale.board.session import Session, StopAsked
+from greywhale.dashboard.limits import BOARD
 from greywhale.dashboard.relay import Relay
-from greywhale.dashboard.silence import ASK_AGAIN_S
 from greywhale.protocol.ports import choose_port, lasting_name
 from greywhale.protocol.transport import Line, PortBusyError, PortLostError
 
-# How long until a board is looked for again, and until one that was stopped from elsewhere is taken again.
-LOOK_AGAIN_S = 0.5
-AFTER_STOP_S = 3.0
-# A board that is just being greeted keeps its port for so long.
-LET_GO_S = 10.0
-# Samples of so many milliseconds are read at once: to wake up at each tick would cost more than all else.
-ROUND_S = 0.004
 STOPPED = "The motors are off: `greywhale stop` was called in another terminal. The board is taken again in a moment."
 
 logger = logging.getLogger(__name__)
@@ -63,7 +56,7 @@ class PortHolder:
         with self._changed:
             self._away = sentence
             self._changed.notify_all()
-            free = self._changed.wait_for(lambda: self._free, LET_GO_S)
+            free = self._changed.wait_for(lambda: self._free, BOARD.let_go_s)
         try:
             if not free:
                 raise UserError("the board's port is not free yet; try again.")
@@ -87,23 +80,23 @@ class PortHolder:
 
     def hold(self) -> float:
         """Hold the board until it is lost or the server ends; after how many seconds to try again."""
-        port, again_s = "", LOOK_AGAIN_S
+        port, again_s = "", BOARD.look_again_s
         try:
-            port, again_s = self._choose(self._named), ASK_AGAIN_S
+            port, again_s = self._choose(self._named), BOARD.ask_again_s
             with Device(port, restart=False) as device:
                 port = lasting_name(port)
                 self._named = self._named and port  # the socket that it is plugged into, where that has a name
                 self._share(device, port)
         except StopAsked:
             self._relay.close(port, STOPPED)
-            return AFTER_STOP_S
+            return BOARD.after_stop_s
         except (PortLostError, PortBusyError) as error:
             self._tell(port, error)
-            return LOOK_AGAIN_S
+            return BOARD.look_again_s
         except UserError as error:
             self._tell(port, error)
             return again_s
-        return LOOK_AGAIN_S
+        return BOARD.look_again_s
 
     def _share(self, device: Device, port: str) -> None:
         """Share the board. At the end its clients are told why, then its motors are stopped and its port is closed."""
@@ -113,7 +106,7 @@ class PortHolder:
         try:
             while not (self._ending.is_set() or self._away):
                 turn(self._relay, line, session)
-                line.wait(ROUND_S)
+                line.wait(BOARD.round_s)
         except StopAsked:
             self._relay.stopped("with `greywhale stop` in another terminal")
             self._relay.close(port, STOPPED)

@@ -15,7 +15,8 @@ from greywhale.base.errors import UserError
 from greywhale.board.refusal import upper_first
 from greywhale.dashboard.client import STARTS, Client
 from greywhale.dashboard.history import History
-from greywhale.dashboard.lease import LEASE_MS, Due, Lease
+from greywhale.dashboard.lease import Due, Lease
+from greywhale.dashboard.limits import BOARD
 from greywhale.dashboard.members import Members
 from greywhale.dashboard.outbox import Message
 from greywhale.dashboard.requests import Asked, Requests
@@ -120,7 +121,7 @@ class Relay:
                 self._stop()
                 self._refuse(page, "the motors are off: the page that drives fell silent.")
             elif due is Due.RENEWAL:
-                self._requests.send_soon(Asked(schema.RenewRequest.TYPE), schema.RenewRequest(LEASE_MS).pack())
+                self._requests.send_soon(Asked(schema.RenewRequest.TYPE), schema.RenewRequest(BOARD.lease_ms).pack())
 
     # --- clients ----------------------------------------------------------------------------------------------------
 
@@ -296,8 +297,8 @@ class Relay:
         payload = frame.payload
         if client.verb is None and frame.type in _LEASES and len(payload) == schema.EnableRequest.SIZE:
             asked_ms = int.from_bytes(payload, "little")
-            is_short = frame.type == schema.LeadRequest.TYPE or 0 < asked_ms < LEASE_MS
-            payload = schema.EnableRequest(min(asked_ms, LEASE_MS) if is_short else LEASE_MS).pack()
+            is_short = frame.type == schema.LeadRequest.TYPE or 0 < asked_ms < BOARD.lease_ms
+            payload = schema.EnableRequest(min(asked_ms, BOARD.lease_ms) if is_short else BOARD.lease_ms).pack()
             if frame.type in STARTS:
                 self._lease.begin(client, is_short)
         asked = Asked(frame.type, client, frame.seq)

@@ -9,14 +9,10 @@ from typing import NamedTuple
 from greywhale.base.errors import UserError
 from greywhale.board.device import stop_message
 from greywhale.dashboard.client import Client
+from greywhale.dashboard.limits import BOARD
 from greywhale.protocol import schema
 from greywhale.protocol.frames import Frame, encode_frame
 from greywhale.protocol.transport import Line
-
-# While a board with its motors on answers a request, a second one may cost a sample: its tick leaves little time. So
-# one is on its way, and the next waits for its answer, but not longer than this: then it was lost.
-ANSWER_S = 0.03
-MOST_WAITING = 255  # requests; clients ask again for those that a flood of them pushes out
 
 
 class Asked(NamedTuple):
@@ -34,7 +30,7 @@ class Requests:
         self._line: Line | None = None
         self._asked: dict[int, Asked] = {}
         self._sequence = 0
-        self._waiting: deque[tuple[Asked, bytes]] = deque(maxlen=MOST_WAITING)  # requests, with their payloads
+        self._waiting: deque[tuple[Asked, bytes]] = deque(maxlen=BOARD.most_waiting)  # requests, with their payloads
         self._on_its_way: int | None = None  # the number of the last that was sent, until its answer
         self._sent_s = 0.0
 
@@ -50,7 +46,7 @@ class Requests:
 
     def look(self, now_s: float) -> None:
         """Send the next where the one before has had its time."""
-        if now_s > self._sent_s + ANSWER_S:
+        if now_s > self._sent_s + BOARD.answer_s:
             self._on_its_way = None
         self._send_next()
 

@@ -7,14 +7,14 @@ from pathlib import Path
 import numpy as np
 
 from greywhale.base.errors import UserError
-from greywhale.dashboard.history import MOST_SAMPLES
+from greywhale.dashboard.limits import SAMPLES
 from greywhale.files.log import read_log
 from greywhale.files.log.layout import QUANTITIES
 from greywhale.protocol import schema
 from greywhale.protocol.firmware import JOINTS, TICK_S
 
 # A row of a recording has some 100 bytes. What is larger is not even read.
-MOST_LOG_BYTES = 200 * MOST_SAMPLES
+MOST_LOG_BYTES = 200 * SAMPLES.history
 _COUNTS = np.dtype("<i2"), JOINTS
 _PAYLOAD = np.dtype(
     [
@@ -34,7 +34,7 @@ def samples_of_log(path: Path) -> bytes:
     log = read_log(path)
     ticks = np.rint((log.time - log.time[0]) / TICK_S)
     last = np.flatnonzero(np.diff(ticks, append=np.inf))
-    if last.size > MOST_SAMPLES or ticks[-1] > np.iinfo(np.uint32).max:
+    if last.size > SAMPLES.history or ticks[-1] > np.iinfo(np.uint32).max:
         raise _too_long(path)
     rows = np.zeros(last.size, _PAYLOAD)
     rows["tick"] = ticks[last]
@@ -46,5 +46,6 @@ def samples_of_log(path: Path) -> bytes:
 
 def _too_long(path: Path) -> UserError:
     return UserError(
-        f"{path}: it is longer than the {MOST_SAMPLES} samples that a page shows; measure it with `greywhale evaluate`."
+        f"{path}: it is longer than the {SAMPLES.history} samples that a page shows; measure it with "
+        "`greywhale evaluate`."
     )

@@ -19,18 +19,16 @@ from starlette.routing import BaseRoute, Mount, Route, WebSocketRoute
 from starlette.staticfiles import StaticFiles
 
 from greywhale.base.errors import BadUsage, UserError, cut, os_reason
-from greywhale.dashboard.access import ANEW, TICKET_LASTS_S, Access
+from greywhale.dashboard.access import ANEW, Access
 from greywhale.dashboard.answers import Answers
 from greywhale.dashboard.connections import Server
 from greywhale.dashboard.door import Door
 from greywhale.dashboard.folder import IF_THERE, Folder, spool
 from greywhale.dashboard.guard import ENTRY, UPLOAD, Guard
+from greywhale.dashboard.limits import REQUESTS
 from greywhale.dashboard.sockets import serve_board, serve_host, serve_torque
 
 PAGE = Path(__file__).resolve().parent / "page"
-# Frames of the link are 50 bytes; a page sends some at once.
-MOST_MESSAGE_BYTES = 1 << 16
-_END_WAIT_S = 1  # for open requests, at the server's end
 _BYTES = "application/octet-stream"
 PAGE_ID = "page id"  # among what is asked: which page asks, by the name that its board's socket told it
 
@@ -104,9 +102,9 @@ def make_server(app: Guard) -> Server:
         http="h11",
         ws="wsproto",
         loop="asyncio",
-        ws_max_size=MOST_MESSAGE_BYTES,
+        ws_max_size=REQUESTS.most_message_bytes,
         ws_per_message_deflate=False,
-        timeout_graceful_shutdown=_END_WAIT_S,
+        timeout_graceful_shutdown=1,
         proxy_headers=False,  # a client's address is its own, whatever it says
         log_config=None,
         log_level=logging.ERROR,  # a warning for each odd request would let anybody fill the log
@@ -123,7 +121,7 @@ def _entry(access: Access) -> Callable[[Request], Awaitable[Response]]:
         if token is not None:
             return JSONResponse({"token": token})
         return PlainTextResponse(
-            f"This address was used before, or is older than {TICKET_LASTS_S / 60:.0f} minutes; {ANEW}", 403
+            f"This address was used before, or is older than {REQUESTS.ticket_lasts_s / 60:.0f} minutes; {ANEW}", 403
         )
 
     return enter

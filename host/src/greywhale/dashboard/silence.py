@@ -9,9 +9,7 @@ from __future__ import annotations
 
 from enum import Enum, auto
 
-REPORT_SILENCE_S = 0.5
-ASK_AGAIN_S = 6.0
-GIVE_UP_S = 7.0
+from greywhale.dashboard.limits import BOARD
 
 
 class Step(Enum):
@@ -43,17 +41,17 @@ class Silence:
 
     def lasts(self, now_s: float) -> bool:
         """True where the board has been silent for so long that nothing but a stop is sent."""
-        return now_s > self.heard_s + REPORT_SILENCE_S
+        return now_s > self.heard_s + BOARD.report_silence_s
 
     def look(self, now_s: float) -> Step:
         """The step that is due now, each once."""
         silent_s = now_s - self.heard_s
-        if silent_s > GIVE_UP_S:
+        if silent_s > BOARD.give_up_s:
             return Step.GIVE_UP
-        if silent_s > REPORT_SILENCE_S and not self._told:
+        if silent_s > BOARD.report_silence_s and not self._told:
             self._told = True
             return Step.TELL
-        if silent_s > ASK_AGAIN_S and not self._asked_again:
+        if silent_s > BOARD.ask_again_s and not self._asked_again:
             self._asked_again = True
             return Step.ASK_AGAIN
         return Step.NOTHING

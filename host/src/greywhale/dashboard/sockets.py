@@ -7,6 +7,7 @@ import contextlib
 import json
 from collections.abc import Awaitable, Callable, Mapping
 
+from starlette import status
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from greywhale.base.errors import UserError
@@ -15,18 +16,11 @@ from greywhale.dashboard.client import Client
 from greywhale.dashboard.guard import SUBPROTOCOL
 from greywhale.dashboard.job import Facts
 from greywhale.dashboard.jobs import Jobs
+from greywhale.dashboard.limits import REQUESTS, SAMPLES
 from greywhale.dashboard.outbox import Outbox
 from greywhale.dashboard.relay import Relay
 from greywhale.dashboard.torque import PagesTorque
 from greywhale.observe import LIVE_EVERY_TICKS
-
-# Samples of so long go out in one message.
-BATCH_S = 0.02
-# And torques so often: more, nobody sees or hears.
-TORQUE_S = 0.04
-# A page that drives sends a sign of life every 100 ms and, while it leads, a point every 16 ms.
-MESSAGES_A_SECOND, MESSAGES_AT_ONCE = 400.0, 2000.0
-_TOO_MANY, _NOT_UNDERSTOOD = 1008, 1003  # codes of RFC 6455 to close a WebSocket with
 
 
 class Waiting:
@@ -46,7 +40,7 @@ class Waiting:
         if urgent:
             self._urgent.set()
 
-    async def wait(self, batch_s: float = BATCH_S) -> None:
+    async def wait(self, batch_s: float = SAMPLES.batch_s) -> None:
         """Until something is there; what is not urgent may gather for a moment."""
         await self._some.wait()
         with contextlib.suppress(TimeoutError):
@@ -84,7 +78,7 @@ async def _send(socket: WebSocket, outbox: Outbox, waiting: Waiting) -> None:
 
 
 async def _receive(socket: WebSocket, client: Client, relay: Relay) -> None:
-    bucket = Bucket(MESSAGES_A_SECOND, MESSAGES_AT_ONCE)
+    bucket = Bucket(*REQUESTS.messages)
     wishes: dict[str, Callable[[Client], None]] = {
         "drive": relay.drive,
         "release": relay.release,
@@ -95,14 +89,14 @@ async def _receive(socket: WebSocket, client: Client, relay: Relay) -> None:
         if message["type"] == "websocket.disconnect":
             return
         if not bucket.take():
-            await socket.close(_TOO_MANY, "too many messages")
+            await socket.close(status.WS_1008_POLICY_VIOLATION, "too many messages")
             return
         if (data := message.get("bytes")) is not None:
             relay.receive(client, data)
             continue
         wish = wishes.get(_kind(message["text"]))
         if wish is None:
-            await socket.close(_NOT_UNDERSTOOD, "this message is not known")
+            await socket.close(status.WS_1003_UNSUPPORTED_DATA, "this message is not known")
             return
         wish(client)
 
@@ -147,7 +141,7 @@ async def serve_torque(socket: WebSocket, relay: Relay, begin: Callable[[Mapping
 
     async def tell() -> None:
         while True:
-            await waiting.wait(TORQUE_S)
+            await waiting.wait(SAMPLES.torque_s)
             _, samples = client.outbox.take()
             if (told := await asyncio.to_thread(torque.take, samples)) is not None:
                 await socket.send_text(json.dumps(told))

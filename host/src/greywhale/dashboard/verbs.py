@@ -7,10 +7,7 @@ from typing import Any, Literal, TypedDict
 
 from greywhale.base.errors import BadUsage, cut
 from greywhale.dashboard.folder import Folder
-
-LONGEST_VALUE_LETTERS = 1000  # a path is shorter
-MOST_VALUES = 100  # of one argument, such as the logs of `evaluate`
-
+from greywhale.dashboard.limits import REQUESTS
 
 # How a verb uses a board. Taken: it has the port itself, and the page sees nothing meanwhile.
 BoardUse = Literal["none", "lent", "taken"]
@@ -77,12 +74,14 @@ def _flag(argument: ArgumentFacts, value: object) -> bool:
 def _texts(argument: ArgumentFacts, value: object, folder: Folder) -> Iterator[str]:
     """The values of an argument. A name is looked at whatever it is called: any text may be a file's."""
     values: Sequence[object] = value if isinstance(value, list) and argument["many"] else [value]
-    if len(values) > MOST_VALUES:
-        raise BadUsage(f"{argument['label']} has {len(values)} values, but at most {MOST_VALUES} may be given.")
+    if len(values) > REQUESTS.most_values:
+        raise BadUsage(
+            f"{argument['label']} has {len(values)} values, but at most {REQUESTS.most_values} may be given."
+        )
     for one in values:
         text = str(one)
         fits = isinstance(one, str | int | float) and not isinstance(one, bool)
-        if not fits or not text or not text.isprintable() or len(text) > LONGEST_VALUE_LETTERS:
+        if not fits or not text or not text.isprintable() or len(text) > REQUESTS.longest_value_letters:
             raise BadUsage(f"{argument['label']} is {cut(repr(one))}, but it must be text or a number.")
         if isinstance(one, str):
             folder.argument(text)

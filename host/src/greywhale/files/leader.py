@@ -16,14 +16,11 @@ from greywhale.base.types import Floats
 from greywhale.files.log.check import add_rows, facts_of
 from greywhale.files.log.condition import judge_condition
 from greywhale.files.log.layout import COLUMNS as LOG_COLUMNS
+from greywhale.files.log.limits import LEADER
 from greywhale.files.log.reader import refuse_other_times
 from greywhale.files.log.units import doubt_speed, perhaps_degrees
 from greywhale.files.trajectory import POT_RANGE_RAD, Trajectory
 from greywhale.protocol.firmware import JOINTS
-
-LONGEST_S = 3600.0  # of a motion; a longer one has its times in another unit
-# Far beyond a hand (some 30 rad/s), but a step of `multi_steps` over the whole range, 40 ms long, stays below it.
-FASTEST_RAD_S = 250.0
 
 COLUMNS = ("time_s", *(f"leader_{joint}" for joint in range(JOINTS)))
 
@@ -63,12 +60,16 @@ def _find_wrong(time_s: Floats, angles: Floats) -> tuple[int, str, str] | None:
         allowed = f"[-{POT_RANGE_RAD}, {POT_RANGE_RAD}] rad{perhaps}"
         problem = f"{angles[row, joint]:g} rad is out of the potentiometers' range {allowed}"
         return row, COLUMNS[1 + joint], problem
-    for row in np.flatnonzero(time_s - time_s[0] > LONGEST_S)[:1].tolist():
-        return row, "time_s", f"{time_s[row]:g} s is more than {LONGEST_S:g} s after the first row; times are in s"
+    for row in np.flatnonzero(time_s - time_s[0] > LEADER.longest_s)[:1].tolist():
+        return (
+            row,
+            "time_s",
+            f"{time_s[row]:g} s is more than {LEADER.longest_s:g} s after the first row; times are in s",
+        )
     speed = np.abs(np.diff(angles, axis=0)) / np.diff(time_s)[:, None]
-    for row, joint in np.argwhere(speed > FASTEST_RAD_S)[:1].tolist():
+    for row, joint in np.argwhere(speed > LEADER.fastest_rad_s)[:1].tolist():
         move = f"{angles[row, joint]:g} to {angles[row + 1, joint]:g} rad in {time_s[row + 1] - time_s[row]:g} s"
-        problem = f"from {move} is faster than {FASTEST_RAD_S:g} rad/s; give a jump more time, and times in s"
+        problem = f"from {move} is faster than {LEADER.fastest_rad_s:g} rad/s; give a jump more time, and times in s"
         return row + 1, COLUMNS[1 + joint], problem
     return None
 

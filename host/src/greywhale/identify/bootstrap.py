@@ -20,12 +20,13 @@ from threadpoolctl import threadpool_limits
 from greywhale.arm.parameters import USUAL_TRACK_RAD
 from greywhale.base.types import Floats
 from greywhale.identify.closed_loop import Loop
-from greywhale.identify.data import COUNTS, FINE_STEP_S, Prepared, prepare
+from greywhale.identify.data import Prepared, prepare
 from greywhale.identify.limits import IDENTIFICATION_LIMITS, UncertaintyLimits
 from greywhale.identify.space import COUPLED, WHOLE_ARM, Space
 from greywhale.identify.steps import WindowFit
 from greywhale.identify.windows import WindowResidual
-from greywhale.protocol.firmware import ANGLE_LSB, TICK_S, pwm_steps
+from greywhale.loop.leader import SLICE_S
+from greywhale.protocol.firmware import ANGLE_LSB, CONVERTER_COUNTS, TICK_S, pwm_steps
 
 LOGS = 6
 STEPS = 8
@@ -53,7 +54,7 @@ def scatter_of_fits(
 
     def fit(number: int) -> Floats:
         made = [_simulate(*pair, plant, zero, 1 + number + LOGS * seed) for pair in zip(logs, loops, strict=True)]
-        windows = WindowResidual(made, space.arm, joints, longest_step=FINE_STEP_S)
+        windows = WindowResidual(made, space.arm, joints, longest_step=SLICE_S)
         windows.settle(plant, zero)
         start = x + logs[0].limits.uncertainty.start_sigmas * root @ np.random.default_rng(
             [seed, number]
@@ -133,7 +134,7 @@ def read_motion(shown: Floats, noise: Floats, shift: int, random: np.random.Gene
     from scipy.signal import lfilter  # slow to import
 
     before = np.vstack([shown[:1], shown[:-1]])
-    step = USUAL_TRACK_RAD / COUNTS
+    step = USUAL_TRACK_RAD / CONVERTER_COUNTS
     mean = np.zeros_like(shown)
     for moment in MOMENTS:
         seen = before + moment * (shown - before) + noise * random.standard_normal(shown.shape)

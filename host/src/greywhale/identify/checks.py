@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from greywhale.arm import ArmParameters
 from greywhale.base.errors import UserError
 from greywhale.base.types import Floats
-from greywhale.files.log.driven import MOTION_RAD, tell_off, tell_undriven
+from greywhale.files.log.driven import tell_off, tell_undriven
+from greywhale.files.log.limits import MOTORS
 from greywhale.files.log.units import doubt_spacing
 from greywhale.identify.data import Prepared, rows_in
 from greywhale.identify.limits import CheckLimits
@@ -57,11 +58,11 @@ def _refuse_still(name: str, leader: Floats, follower: Floats) -> NoReturn:
     ranges = ", ".join(f"{np.ptp(follower[:, joint]):.3f}" for joint in range(JOINTS))
     led = float(np.ptp(leader, axis=0).max())
     remedy = "move the leader while recording"
-    if led > MOTION_RAD:
+    if led > MOTORS.motion_rad:
         remedy = f"the leader moved by {led:.2g} rad, so check the motors' supply and the follower's potentiometers"
     raise UserError(
-        f"{name}: no joint moved: joints 0..3 stayed within {ranges} rad, but {MOTION_RAD:g} rad at least are needed; "
-        f"{remedy}."
+        f"{name}: no joint moved: joints 0..3 stayed within {ranges} rad, but {MOTORS.motion_rad:g} rad at least are "
+        f"needed; {remedy}."
     )
 
 

@@ -11,7 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from greywhale.arm import ArmParameters, PotentiometerBank
-from greywhale.arm.parameters import MOST_NOISE_V, Potentiometer
+from greywhale.arm.limits import DOUBTS
+from greywhale.arm.parameters import Potentiometer
 from greywhale.base.types import Floats
 from greywhale.identify.data import Prepared, at, part_of, pot_noise
 from greywhale.identify.space import Space
@@ -131,6 +132,6 @@ def _home(angles: Floats, arm: ArmParameters) -> list[float]:
 
 def _pots(log: Prepared, arm: ArmParameters, table: ParameterTable, zero: Floats) -> PotentiometerBank:
     """Usual potentiometers as noisy as the log: the noise lets joints creep that would stick without it."""
-    noise = np.minimum(pot_noise(log, table["filter_shift"], arm.follower_pots.supply), MOST_NOISE_V)
+    noise = np.minimum(pot_noise(log, table["filter_shift"], arm.follower_pots.supply), DOUBTS.most_noise_v)
     pots = [Potentiometer(centre=float(zero[joint]), noise=float(noise[joint])) for joint in range(JOINTS)]
     return PotentiometerBank(supply=arm.follower_pots.supply, joint=tuple(pots))

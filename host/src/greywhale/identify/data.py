@@ -11,16 +11,15 @@ from numpy.typing import NDArray
 from greywhale.arm.parameters import USUAL_TRACK_RAD
 from greywhale.base.types import Floats
 from greywhale.files.log import Log
-from greywhale.files.log.driven import MOTION_RAD, driven_rows, undriven
+from greywhale.files.log.driven import driven_rows, undriven
+from greywhale.files.log.limits import MOTORS
 from greywhale.identify.limits import IDENTIFICATION_LIMITS, DataLimits, IdentificationLimits
 from greywhale.measure.runs import Run, gap_free_runs
-from greywhale.protocol.firmware import CONVERSIONS, JOINTS, TICK_S
+from greywhale.protocol.firmware import CONVERSIONS, CONVERTER_COUNTS, JOINTS, TICK_S
 
-COUNTS = 1024  # of the converter
 # Longest steps of the integration in a window, s: for the search, and for the final fit (a light link moves through its
 # gap in some milliseconds).
 STEP_S = 1e-3
-FINE_STEP_S = 0.25e-3
 # Firmware: from a new sample to its voltage, and the mean age of a tick's four conversions (s).
 ACTUATION_S = 0.3e-3
 CONVERSION_S = 0.5e-3
@@ -98,7 +97,9 @@ def prepare(log: Log, filter_shift: int | None, judging: IdentificationLimits = 
     used = rows_in(runs, len(log.time))
     delay = 0.0 if filter_shift is None else CONVERSION_S + TICK_S * ((1 << filter_shift) - 1)
     noise = _noise(log.follower - smooth, used, size)
-    moving = np.array([bool(used.any() and np.ptp(log.follower[used, joint]) > MOTION_RAD) for joint in range(JOINTS)])
+    moving = np.array(
+        [bool(used.any() and np.ptp(log.follower[used, joint]) > MOTORS.motion_rad) for joint in range(JOINTS)]
+    )
     places = _places(velocity, runs, limits)
     still = undriven(log, used)
     return Prepared(log, runs, period, delay, smooth, velocity, acceleration, places, noise, moving, still, judging)
@@ -113,7 +114,7 @@ def pot_noise(log: Prepared, filter_shift: int, supply: float) -> Floats:
     """
     share = 1.0 / (1 << filter_shift)
     conversion = log.noise**2 * CONVERSIONS * (2.0 - share) / share
-    analog = np.maximum(conversion - (USUAL_TRACK_RAD / COUNTS) ** 2 / 12.0, 0.0)
+    analog = np.maximum(conversion - (USUAL_TRACK_RAD / CONVERTER_COUNTS) ** 2 / 12.0, 0.0)
     return np.sqrt(analog) / USUAL_TRACK_RAD * supply
 
 

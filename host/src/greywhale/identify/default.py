@@ -8,7 +8,6 @@ from greywhale.base.types import Floats
 from greywhale.identify.bootstrap import scatter_of_fits, spread_covariance
 from greywhale.identify.candidate import Candidate
 from greywhale.identify.combinations import combinations
-from greywhale.identify.data import FINE_STEP_S
 from greywhale.identify.found_model import FoundModel, ParameterEstimate, Rival
 from greywhale.identify.request import IdentificationRequest
 from greywhale.identify.samples import draw_plants, read_search
@@ -16,6 +15,7 @@ from greywhale.identify.search import Search
 from greywhale.identify.space import KINDS, Space
 from greywhale.identify.uncertainty import uncertainty
 from greywhale.identify.windows import WindowResidual
+from greywhale.loop.leader import SLICE_S
 
 DRAWS = 60  # plants that tell how much better or worse a model may do by chance
 
@@ -33,7 +33,7 @@ def find_default(task: IdentificationRequest) -> FoundModel:
     best = search.best
     assert best is not None
     task.report("judging the model", 0.0)
-    windows = WindowResidual(prepared, arm, joints, longest_step=FINE_STEP_S)
+    windows = WindowResidual(prepared, arm, joints, longest_step=SLICE_S)
     windows.settle(best.plant, best.zero)
     sure = uncertainty(windows, best.space, best.x, joints, to_read=True)
     if search.complete and search.loops:

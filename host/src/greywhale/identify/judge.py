@@ -18,13 +18,13 @@ from greywhale.arm import ArmParameters
 from greywhale.arm.parameters import JOINT_NAMES
 from greywhale.base.types import Floats, PerJoint
 from greywhale.identify.closed_loop import COMPARED_TICKS, Loop
-from greywhale.identify.data import COUNTS, Prepared
+from greywhale.identify.data import Prepared
 from greywhale.identify.limits import IDENTIFICATION_LIMITS, JudgeLimits
 from greywhale.identify.space import Space
 from greywhale.identify.windows import WindowResidual
 from greywhale.measure.swings import smooth_motion
 from greywhale.measure.swings_in_logs import FIT_IT, Swings, describe_difference, swings_of
-from greywhale.protocol.firmware import JOINTS, TICK_S
+from greywhale.protocol.firmware import CONVERTER_COUNTS, JOINTS, TICK_S
 from greywhale.protocol.table import ParameterTable
 
 TINY = 1e-12  # rad², beside every error of a joint that moved
@@ -224,7 +224,7 @@ def _worse_by_chance(estimate: float, draws: Floats, sure_share: float) -> float
 
 def _unresolved(arm: ArmParameters) -> Floats:
     """Return the error that a converter's steps hide, rad² (4,): even the true arm is off its own log by so much."""
-    steps = np.array([pot.track for pot in arm.follower_pots.joint]) / COUNTS
+    steps = np.array([pot.track for pot in arm.follower_pots.joint]) / CONVERTER_COUNTS
     return steps**2 / 12.0
 
 

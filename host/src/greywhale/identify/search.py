@@ -24,13 +24,14 @@ from greywhale.arm import ArmParameters
 from greywhale.base.types import Floats, Progress
 from greywhale.identify.candidate import Candidate, WindowsAndLoop
 from greywhale.identify.closed_loop import Loop, LoopResidual
-from greywhale.identify.data import FINE_STEP_S, Prepared
+from greywhale.identify.data import Prepared
 from greywhale.identify.fit import least_squares_fit
 from greywhale.identify.nearer import cost, far_joints, with_nearer_torque
 from greywhale.identify.soft_teeth import with_soft_teeth
 from greywhale.identify.space import MOTOR, Space
 from greywhale.identify.steps import WindowFit
 from greywhale.identify.windows import WindowResidual
+from greywhale.loop.leader import SLICE_S
 
 # The quantities that each order of the model adds to the one before.
 ORDERS: dict[str, tuple[str, ...]] = {
@@ -339,7 +340,7 @@ class Search:
         self._begin_part("fitting the chosen model to the whole log", 0.0, 1.0, FITS * 3)
         if self.begin is None:
             self.best = self._retry_optima(self.best)
-        windows = WindowResidual(self.logs, self.arm, self.joints, longest_step=FINE_STEP_S)
+        windows = WindowResidual(self.logs, self.arm, self.joints, longest_step=SLICE_S)
         windows.settle(self.best.plant, self.best.zero)
         found = self._settle(windows, self.best)
         self.best = self._fit_closed(windows, found, whole=True) if self.best.closed else found

@@ -7,7 +7,8 @@ from collections.abc import Iterator
 import numpy as np
 
 from greywhale.arm import ArmParameters, PotentiometerBank
-from greywhale.arm.parameters import MOST_NOISE_V, USUAL_TRACK_RAD, Potentiometer, with_usual_noise
+from greywhale.arm.limits import DOUBTS
+from greywhale.arm.parameters import USUAL_TRACK_RAD, Potentiometer, with_usual_noise
 from greywhale.arm.plants import plant_row
 from greywhale.base.types import Controllers, Floats
 from greywhale.loop.closed_loop import ClosedLoop, FollowerLines, known_readings, shown_angles, with_ideal_follower
@@ -18,7 +19,6 @@ from greywhale.protocol.table import ParameterTable
 
 # The model stands at the log's first pose for so long before it is led, so that it starts at rest.
 LEAD_TICKS = 500
-NOISE_SEED = 5  # any one, the same every time
 
 
 class LedModel:
@@ -34,7 +34,7 @@ class LedModel:
             with_ideal_follower(table),
             known_readings(reference, reference + zero),
             _read_by_an_ideal_board(noisy.follower_pots, zero),
-            seed=NOISE_SEED,
+            seed=5,  # any one, the same every time
             home=home,
             gap=[0.0] * JOINTS,
             weight_s=np.zeros(len(reference)),
@@ -58,7 +58,7 @@ class LedModel:
 
 def _read_by_an_ideal_board(pots: PotentiometerBank, zero: Floats) -> PotentiometerBank:
     """Usual potentiometers that read 0 at these angles (4,) rad, and are as noisy as those of the arm."""
-    noise = [min(pot.noise * USUAL_TRACK_RAD / pot.track, MOST_NOISE_V) for pot in pots.joint]
+    noise = [min(pot.noise * USUAL_TRACK_RAD / pot.track, DOUBTS.most_noise_v) for pot in pots.joint]
     usual = zip(zero.tolist(), noise, strict=True)
     return PotentiometerBank(
         supply=pots.supply, joint=tuple(Potentiometer(centre=centre, noise=size) for centre, size in usual)

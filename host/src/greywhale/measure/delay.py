@@ -13,34 +13,24 @@ import scipy  # loads a part of itself when it is first used
 from numpy.typing import NDArray
 
 from greywhale.base.types import Floats
-from greywhale.measure.step_response import ONSET_RAD, Departure
+from greywhale.measure.limits import DELAY, STEPS
+from greywhale.measure.step_response import Departure
 
-# A joint that moves less than this (rad) shows noise rather than a delay.
-_SMALLEST_MOTION = 0.05
-# Below this correlation the follower does not follow in any useful sense.
-_LOWEST_CORRELATION = 0.5
-# Lags below zero are searched this far (s), only to tell a peak at zero from the edge of the search.
-_BEFORE_ZERO_S = 0.1
-_LONGEST_S = 1.0
-# Overlaps that vary less than this share of the whole show no likeness.
-_STILL = 1e-9
 # Samples that are transformed at once, so that a log of an hour needs little memory.
 _PIECE = 1 << 16
-# At the longest lag the two signals must still overlap for so many seconds.
-_SHORTEST_OVERLAP_S = 1.0
 
 
 def correlation_delay(leader: Floats, follower: Floats, period: float) -> float | None:
     """Delay in s, or None: recording too short, motion too small, signals too different, no peak within the search."""
-    if np.ptp(leader) < _SMALLEST_MOTION or np.ptp(follower) < _SMALLEST_MOTION:
+    if np.ptp(leader) < DELAY.least_motion_rad or np.ptp(follower) < DELAY.least_motion_rad:
         return None
-    first = -max(2, round(_BEFORE_ZERO_S / period))
-    last = max(2, round(_LONGEST_S / period))
-    if (len(leader) - last) * period < _SHORTEST_OVERLAP_S:
+    first = -max(2, round(DELAY.before_zero_s / period))
+    last = max(2, round(DELAY.longest_s / period))
+    if (len(leader) - last) * period < DELAY.shortest_overlap_s:
         return None
     likeness = correlations(leader, follower, first, last)
     best = int(np.argmax(likeness))
-    if likeness[best] < _LOWEST_CORRELATION or best in (0, len(likeness) - 1):
+    if likeness[best] < DELAY.least_correlation or best in (0, len(likeness) - 1):
         return None
     left, peak, right = likeness[best - 1 : best + 2]
     bend = left - 2.0 * peak + right
@@ -61,7 +51,7 @@ def correlations(leader: Floats, follower: Floats, first: int, last: int) -> Flo
     spread_a = _sums(np.square(a, out=a), behind, ahead) - sum_a**2 / count
     spread_b = _sums(np.square(b, out=b), ahead, behind) - sum_b**2 / count
     scale = np.sqrt(np.maximum(spread_a, 0.0) * np.maximum(spread_b, 0.0))
-    still = scale <= _STILL * largest
+    still = scale <= 1e-9 * largest  # what varies so little shows no likeness
     return np.where(still, 0.0, (products - sum_a * sum_b / count) / np.where(still, 1.0, scale))
 
 
@@ -92,14 +82,14 @@ def _products(a: Floats, b: Floats, first: int, last: int) -> Floats:
 def onset_delay(leader: Floats, follower: Floats, step: Departure, rest_samples: int) -> float | None:
     """The paper's time delay of a step that the leader makes out of a rest, in samples; None where nothing answers.
 
-    An onset is the first time an angle is further than ONSET_RAD from where it rested, in the direction of the step; it
-    lies between two samples, and is interpolated. The follower's onset is looked for until the leader's next rest has
-    ended.
+    An onset is the first time an angle is further than `onset_rad` from where it rested, in the direction of the step;
+    it lies between two samples, and is interpolated. The follower's onset is looked for until the leader's next rest
+    has ended.
     """
     # The follower may still be settling when the leader leaves, so its place of rest is its last place.
     moved = leader[step.end : step.limit] - step.begin
     answered = follower[step.end : step.limit] - np.median(follower[step.end - rest_samples // 10 : step.end + 1])
-    command, answer = (_crossing(step.side * angles, ONSET_RAD) for angles in (moved, answered))
+    command, answer = (_crossing(step.side * angles, STEPS.onset_rad) for angles in (moved, answered))
     return None if command is None or answer is None else answer - command
 
 

@@ -34,14 +34,12 @@ from greywhale.files.log import Log
 from greywhale.files.log.driven import as_slice, following_rows
 from greywhale.measure.delay import correlation_delay, onset_delay
 from greywhale.measure.following import follows
+from greywhale.measure.limits import STEPS
 from greywhale.measure.runs import REST_RAD, REST_S, Run, first_part, gap_free_runs, last_part, resting
 from greywhale.measure.step_response import StepResponse, answer, departures, worst
 from greywhale.measure.swings import RIPPLE_S, ripple_of_record
 from greywhale.protocol.firmware import JOINTS, TICK_S
 from greywhale.protocol.joints import ALL, Joints
-
-# More overshoot than this, in per cent of the step, is no chance.
-MORE_PERCENT = 5.0
 
 
 class JointFacts(TypedDict):
@@ -226,6 +224,6 @@ def more_overshoot(before: Evaluation, after: Evaluation) -> str:
     said = []
     for joint in before.joints_in_use:
         was, now = before.joints[joint].overshoot_percent, after.joints[joint].overshoot_percent
-        if was is not None and now is not None and now > was + MORE_PERCENT:
+        if was is not None and now is not None and now > was + STEPS.more_percent:
             said.append(f"joint {joint} from {was:.0f} to {now:.0f} %")
     return ", ".join(said)

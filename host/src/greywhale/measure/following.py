@@ -9,13 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from greywhale.base.types import Floats
-
-# Sticky arms with worn teeth and soft controllers hide up to half of this (rad) to either side.
-LEAST_MOTION_RAD = 0.3
-# A healthy joint answers by one of these.
-DELAYS_S = (0.0, 0.1, 0.2, 0.3)
-# A follower that takes less off the leader's variance than this share does not follow.
-LEAST_SHARE = 0.1
+from greywhale.measure.limits import FOLLOWING
 
 
 def follows(leader: Floats, follower: Floats, period: float) -> bool:
@@ -23,12 +17,12 @@ def follows(leader: Floats, follower: Floats, period: float) -> bool:
 
     A constant error does not count: a joint that is off by an angle follows.
     """
-    delays = [round(delay / period) for delay in DELAYS_S]
+    delays = [round(delay / period) for delay in FOLLOWING.delays_s]
     before = leader[: len(leader) - delays[-1]]
-    if not before.size or np.ptp(before) < LEAST_MOTION_RAD:
+    if not before.size or np.ptp(before) < FOLLOWING.least_motion_rad:
         return True
     return any(_shares(leader[: len(leader) - delay], follower[delay:]) for delay in delays)
 
 
 def _shares(leader: Floats, follower: Floats) -> bool:
-    return bool(np.var(leader - follower) < (1.0 - LEAST_SHARE) * np.var(leader))
+    return bool(np.var(leader - follower) < (1.0 - FOLLOWING.least_share) * np.var(leader))

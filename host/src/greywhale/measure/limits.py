@@ -1,5 +1,5 @@
-"""Limits of a joint's swings, by what it did before, for a commissioning and an adaptation alike; and what counts as a
-visit of a pose.
+"""Limits of a joint's swings, by what it did before, for a commissioning and an adaptation alike; of a visit of a pose;
+and of all that a log is measured by.
 """
 
 from __future__ import annotations
@@ -86,6 +86,62 @@ class RepeatabilityLimits:
     least_visits: int = limit(2, "visits", "a standard deviation needs so many", BY_DEFINITION)
 
 
+@dataclass(frozen=True)
+class StepLimits:
+    """A step of the leader out of a rest, and its answer."""
+
+    onset_rad: float = limit(0.05, "rad", "a joint farther from where it rested has left, as in the paper")
+    step_rad: float = limit(0.15, "rad", "a leader that gets farther makes a step")
+    step_s: float = limit(0.5, "s", "within this time")
+    settled_share: float = limit(0.05, "of the step", "the follower has settled within this to either side")
+    smooth_s: float = limit(0.02, "s", "angles are averaged over it: a single noisy sample is no overshoot")
+    more_percent: float = limit(5.0, "% of the step", "more overshoot than before is no chance")
+
+
+@dataclass(frozen=True)
+class DelayLimits:
+    """The search for the lag at which a follower resembles its leader most."""
+
+    least_motion_rad: float = limit(0.05, "rad", "a joint that moves less shows noise rather than a delay")
+    least_correlation: float = limit(0.5, "", "below, the follower does not follow in any useful sense")
+    before_zero_s: float = limit(0.1, "s", "lags below 0 only tell a peak at 0 from the edge of the search")
+    longest_s: float = limit(1.0, "s", "no longer lag is searched")
+    shortest_overlap_s: float = limit(1.0, "s", "at the longest lag the two must still overlap for so long")
+
+
+@dataclass(frozen=True)
+class FollowingLimits:
+    """Conditions for telling that a joint does not follow at all."""
+
+    least_motion_rad: float = limit(0.3, "rad", "worn teeth and soft controllers hide up to half of it")
+    delays_s: tuple[float, ...] = limit((0.0, 0.1, 0.2, 0.3), "s", "a healthy joint answers by one of these")
+    least_share: float = limit(0.1, "of the variance", "a follower that takes less off its leader's does not follow")
+
+
+@dataclass(frozen=True)
+class HuntingLimits:
+    """Hunting in a log and in what a model makes of it."""
+
+    piece_s: float = limit(0.5, "s", "swings are looked at in pieces of this length")
+    leader_rad: float = limit(5e-3, "rad", "in which the leader makes no larger ones")
+    hunting_rad: float = limit(5e-3, "rad rms", "a joint hunts in a piece in which it swings more")
+    hunting_share: float = limit(0.1, "of the pieces", "and in the log with this share of such pieces, not one alone")
+    alike: float = limit(2.0, "times", "a model swings as the log does within this factor")
+
+
+@dataclass(frozen=True)
+class EvaluationLimits:
+    """All limits by which a log is measured."""
+
+    steps: StepLimits = StepLimits()
+    delay: DelayLimits = DelayLimits()
+    following: FollowingLimits = FollowingLimits()
+    hunting: HuntingLimits = HuntingLimits()
+
+
+EVALUATION_LIMITS = EvaluationLimits()
+STEPS, DELAY = EVALUATION_LIMITS.steps, EVALUATION_LIMITS.delay
+FOLLOWING, HUNTING = EVALUATION_LIMITS.following, EVALUATION_LIMITS.hunting
 REPEATABILITY_LIMITS = RepeatabilityLimits()
 SWING_LIMITS = SwingLimits()
 SWING_BOUNDS = SWING_LIMITS.bounds

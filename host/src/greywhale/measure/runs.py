@@ -9,8 +9,6 @@ import numpy as np
 import scipy  # loads a part of itself when it is first used
 from numpy.typing import NDArray
 
-# A step of time longer than this many periods is a gap: samples were lost.
-_GAP = 1.5
 # Rows that are filtered at once, so that a log of an hour needs little memory.
 _PART = 1 << 18
 # A leader rests that has stayed within the band (rad) for so long (s).
@@ -50,7 +48,7 @@ def gap_free_runs(time: NDArray[np.float64], wanted: NDArray[np.bool_], no_gap_s
 
     In any case samples within `no_gap_s` are neighbours.
     """
-    most = max(_GAP * float(np.median(np.diff(time), overwrite_input=True)), no_gap_s)
+    most = max(1.5 * float(np.median(np.diff(time), overwrite_input=True)), no_gap_s)  # beyond, samples were lost
     joined = (np.diff(time) <= most) & wanted[1:] & wanted[:-1]
     return [Run(start, stop + 1, float(time[stop] - time[start]) / (stop - start)) for start, stop in stretches(joined)]
 

@@ -1,7 +1,7 @@
 """Steps of the leader out of a rest, and how the follower answers them: overshoot and settling time.
 
-- A step begins where a rest of the leader ends and the leader then gets further than STEP_RAD within STEP_S, to one
-  side. It counts here if the leader rests again, at least STEP_RAD away from where it was.
+- A step begins where a rest of the leader ends and the leader then gets further than `step_rad` within `step_s`, to one
+  side. It counts here if the leader rests again, at least `step_rad` away from where it was.
 - Overshoot: how far the follower gets beyond the leader's new place, in per cent of the step.
 - Settling time: from when the leader is in the band around its new place for good until the follower is, until the
   leader's next departure. The band is 5 % of the step to either side, but at least REST_RAD. A leader that jumps
@@ -20,14 +20,10 @@ import scipy  # loads a part of itself when it is first used
 from numpy.typing import NDArray
 
 from greywhale.base.types import Floats
+from greywhale.measure.limits import STEPS
 from greywhale.measure.runs import REST_RAD, REST_S, periods
 
 Bools = NDArray[np.bool_]
-
-ONSET_RAD = 0.05
-STEP_RAD, STEP_S = 0.15, 0.5
-SETTLED_SHARE = 0.05
-SMOOTH_S = 0.02
 
 
 @dataclass(frozen=True)
@@ -50,17 +46,17 @@ class StepResponse:
 
 def departures(leader: Floats, rest: Bools, period: float) -> Iterator[Departure]:
     """Every step of the leader out of a rest."""
-    rested, within = (periods(seconds, period) for seconds in (REST_S, STEP_S))
+    rested, within = (periods(seconds, period) for seconds in (REST_S, STEPS.step_s))
     ends = np.flatnonzero(rest[:-1] & ~rest[1:])
     for index, end in enumerate(ends):
         limit = int(ends[index + 1]) + 1 if index + 1 < len(ends) else len(leader)
         begin = float(np.median(leader[end - rested : end + 1]))
         moved = leader[end:limit] - begin
-        away = np.flatnonzero(np.abs(moved) > ONSET_RAD)
+        away = np.flatnonzero(np.abs(moved) > STEPS.onset_rad)
         if not away.size:
             continue
         side = float(np.sign(moved[away[0]]))
-        if (side * moved[away[0] : away[0] + within]).max() >= STEP_RAD:
+        if (side * moved[away[0] : away[0] + within]).max() >= STEPS.step_rad:
             yield Departure(int(end), limit, begin, side)
 
 
@@ -71,13 +67,13 @@ def answer(leader: Floats, follower: Floats, rest: Bools, step: Departure, perio
         return None
     place = float(np.median(leader[step.end + 1 + int(arrived[0]) : step.limit]))
     moved = step.side * (place - step.begin)
-    if moved < STEP_RAD:
+    if moved < STEPS.step_rad:
         return None
-    here, size = slice(step.end, step.limit), max(1, round(SMOOTH_S / period))
+    here, size = slice(step.end, step.limit), max(1, round(STEPS.smooth_s / period))
     led, followed = (
         scipy.ndimage.uniform_filter1d(angles[here], size, mode="nearest") for angles in (leader, follower)
     )
-    band = max(SETTLED_SHARE * moved, REST_RAD)
+    band = max(STEPS.settled_share * moved, REST_RAD)
     there, settled = (_last(np.abs(angles - place) > band) for angles in (led, followed))
     # At the end of its rest the leader already moves on, perhaps to the same side.
     beyond = np.minimum(step.side * (followed - place), step.side * (followed - led))

@@ -12,17 +12,10 @@ import numpy as np
 
 from greywhale.arm.parameters import JOINT_NAMES
 from greywhale.base.types import Floats
+from greywhale.measure.limits import HUNTING
 from greywhale.measure.swings import smooth_motion
 from greywhale.protocol.firmware import JOINTS
 
-# Swings are looked at in pieces of this length (s) in which the leader itself makes none larger than this (rad). A
-# joint hunts where some of its pieces do, not one alone.
-PIECE_S = 0.5
-LEADER_RAD = 5e-3
-HUNTING_SHARE = 0.1
-HUNTING_RAD = 5e-3  # rms in a piece
-# A model swings as the log does within this factor.
-ALIKE = 2.0
 # What to do about a model that does not understand a log. Where the log is fitted already, no fit will mend it.
 FIT_IT = "fit that log too (greywhale identify takes several)"
 PROVE = "it is fitted to that log already, so let greywhale commission prove controllers on the arm itself"
@@ -42,11 +35,11 @@ def swings_of(follower: Floats, leader: Floats, row_s: float) -> Swings:
     wanted = _pieces(leader - smooth_motion(leader, row_s), row_s)
     pieces = _pieces(follower - smooth_motion(follower, row_s), row_s) - wanted
     rms = np.sqrt(np.mean(pieces**2, axis=1))
-    quiet = np.max(np.abs(wanted), axis=1) < LEADER_RAD
-    hunting = quiet & (rms > HUNTING_RAD)
+    quiet = np.max(np.abs(wanted), axis=1) < HUNTING.leader_rad
+    hunting = quiet & (rms > HUNTING.hunting_rad)
     count = np.maximum(quiet.sum(axis=0), 1)
     found = np.sqrt(np.sum(np.where(quiet, rms, 0.0) ** 2, axis=0) / count)
-    hunts = hunting.sum(axis=0) >= np.maximum(2, HUNTING_SHARE * count)
+    hunts = hunting.sum(axis=0) >= np.maximum(2, HUNTING.hunting_share * count)
     return Swings(
         rms=tuple(float(value) for value in found),
         frequency=tuple(_frequency(pieces[hunting[:, joint], :, joint], row_s) for joint in range(JOINTS)),
@@ -56,7 +49,7 @@ def swings_of(follower: Floats, leader: Floats, row_s: float) -> Swings:
 
 def _pieces(swing: Floats, row_s: float) -> Floats:
     """(pieces, rows, 4)."""
-    size = min(len(swing), max(2, round(PIECE_S / row_s)))
+    size = min(len(swing), max(2, round(HUNTING.piece_s / row_s)))
     return swing[: len(swing) // size * size].reshape(-1, size, JOINTS)
 
 
@@ -78,7 +71,7 @@ def describe_difference(
     for joint in joints:
         who = f"{name}: joint {joint} ({JOINT_NAMES[joint]})"
         seen, told = 1e3 * log.rms[joint], 1e3 * model.rms[joint]
-        if max(seen, told) <= ALIKE * min(seen, told):
+        if max(seen, told) <= HUNTING.alike * min(seen, told):
             continue  # one may just begin to hunt where the other just does not
         if log.hunts[joint] and not model.hunts[joint]:
             sentences.append(

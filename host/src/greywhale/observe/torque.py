@@ -26,12 +26,11 @@ from greywhale.files.log.held import Numbers
 from greywhale.measure.runs import stretches
 from greywhale.observe.limits import TORQUE_LIMITS, TorqueLimits
 from greywhale.protocol import schema
-from greywhale.protocol.firmware import CONVERSIONS, JOINTS, TICK_S
+from greywhale.protocol.firmware import CONVERSIONS, CONVERTER_COUNTS, JOINTS, TICK_S
 from greywhale.protocol.joints import Joints
 from greywhale.protocol.table import ParameterTable
 
 LIVE_EVERY_TICKS = 4  # between samples that are looked at live: each tick would tell much the same
-_LOST = 1.5  # times the spacing: one was lost
 ARMS = 12  # that could have made the log; more would only take longer
 # Rows that are observed at once, so that a log of an hour needs little memory.
 _PART = 1 << 16
@@ -204,7 +203,8 @@ def live_torque(model: ArmParameters, filter_shift: int) -> LiveTorque:
     Where one was lost, all begins anew: nobody knows the voltages meanwhile, and a torque would stand for them.
     """
     spacing_s = LIVE_EVERY_TICKS * TICK_S
-    return LiveTorque(model, filter_shift, spacing_s, replace(TORQUE_LIMITS, restart_s=_LOST * spacing_s))
+    missed = replace(TORQUE_LIMITS, restart_s=1.5 * spacing_s)  # a sample was lost
+    return LiveTorque(model, filter_shift, spacing_s, missed)
 
 
 def estimate_external_torque(log: Log, model: ArmParameters, limits: TorqueLimits = TORQUE_LIMITS) -> ExternalTorque:
@@ -245,12 +245,11 @@ def zero_angles(arm: ArmParameters) -> Floats:
 
 def reading_noise(arm: ArmParameters, filter_shift: int, spacing_s: float) -> Floats:
     """Noise of the readings (4,), rad² s: variance times spacing. Of slow samples each is behind the board's filter."""
-    from greywhale.identify.data import COUNTS  # slow to import
 
     pots = arm.follower_pots
     volts = np.array([pot.noise / pots.supply for pot in pots.joint])
     tracks = np.array([pot.track for pot in pots.joint])
-    conversion = tracks**2 * (volts**2 + 1.0 / (12.0 * COUNTS**2)) / CONVERSIONS
+    conversion = tracks**2 * (volts**2 + 1.0 / (12.0 * CONVERTER_COUNTS**2)) / CONVERSIONS
     share = 1.0 / (1 << filter_shift)
     noise: Floats = conversion * max(TICK_S, spacing_s * share / (2.0 - share))
     return noise

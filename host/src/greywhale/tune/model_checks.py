@@ -22,7 +22,7 @@ from greywhale.loop import Experiment, human_reaches, plant_row
 from greywhale.loop.controllers import controllers_of
 from greywhale.measure.swings_in_logs import FIT_IT
 from greywhale.protocol import schema
-from greywhale.protocol.firmware import TICK_S
+from greywhale.protocol.firmware import CONVERSIONS, CONVERTER_COUNTS, TICK_S
 from greywhale.protocol.schema import Board
 from greywhale.protocol.table import ParameterTable, find_board, refuse_unknown
 from greywhale.tune.limits import TUNING_LIMITS, ModelLimits, TrainingLimits, TuningLimits
@@ -33,7 +33,7 @@ SPREAD_SAMPLES, ONE_BY_ONE_SAMPLES = 33, 9
 REACHES_SEED, REACHES_S, WAIT_TICKS = 2002, 6.0, 200
 CERTAIN = 1e-20  # a variance of next to nothing
 MATCH = "after `greywhale calibrate`, `greywhale arm match` writes the arm file anew"
-CONVERTER_SPAN = 16368  # four conversions of 10 bits, as the board counts a potentiometer's whole track
+CONVERTER_SPAN = 4 * CONVERSIONS * (CONVERTER_COUNTS - 1)  # as the board counts a whole track
 
 
 class Doubt(NamedTuple):

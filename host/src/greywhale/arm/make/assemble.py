@@ -5,10 +5,11 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from greywhale.arm.limits import GUESSES
 from greywhale.arm.make.body import MATERIALS, Body, Section, bar, tube, uniform, with_parts
 from greywhale.arm.make.motor import RAD_S_PER_RPM, DataSheet, tables
 from greywhale.arm.make.questions import Answers
-from greywhale.arm.parameters import JOINT_NAMES, USUAL_NOISE_V, ArmParameters
+from greywhale.arm.parameters import JOINT_NAMES, ArmParameters
 
 MM, GRAM, GRAM_CM2 = 1e-3, 1e-3, 1e-7  # in m, kg and kg m2
 SPARE_RAD = math.radians(5.0)  # of a track beyond the joint's range
@@ -81,7 +82,7 @@ def _joint(number: int, one: Answers | None) -> dict[str, Any]:
 def _pot(one: Answers | None, track: float) -> dict[str, float]:
     """In the middle of its track at 0 where the range allows it, else in the middle of the range."""
     if one is None:
-        return {"track": track, "centre": 0.0, "noise": USUAL_NOISE_V}
+        return {"track": track, "centre": 0.0, "noise": GUESSES.noise_v}
     low, high = math.radians(one["min_deg"]), math.radians(one["max_deg"])
     fits = max(-low, high) + SPARE_RAD <= track / 2.0
-    return {"track": track, "centre": 0.0 if fits else (low + high) / 2.0, "noise": USUAL_NOISE_V}
+    return {"track": track, "centre": 0.0 if fits else (low + high) / 2.0, "noise": GUESSES.noise_v}

@@ -9,12 +9,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from greywhale.arm.from_plant import BACK_EMF_SHARE
+from greywhale.arm.limits import DOUBTS, GUESSES
 
 RAD_S_PER_RPM = math.tau / 60.0
-USUAL_NO_LOAD_SHARE = 0.05  # of the stall current
-USUAL_BREAKAWAY_RATIO = 1.25  # friction at rest to sliding friction
-USUAL_TIME_CONSTANT_S = 0.02  # a brushed motor alone is at full speed about three times as late
 
 
 @dataclass(frozen=True)
@@ -51,7 +48,7 @@ def tables(sheet: DataSheet) -> dict[str, dict[str, float]]:
     coulomb = sheet.stall_torque * sheet.no_load_current / sheet.stall_current
     per_volt = (sheet.stall_torque + coulomb) / sheet.rated_v
     ratio = sheet.gear_ratio
-    at_joint = min((sheet.stall_torque + coulomb) / sheet.stall_current, BACK_EMF_SHARE * sheet.slope / per_volt)
+    at_joint = min((sheet.stall_torque + coulomb) / sheet.stall_current, DOUBTS.back_emf_share * sheet.slope / per_volt)
     viscous = sheet.slope - per_volt * at_joint
     return {
         "motor": {
@@ -61,5 +58,5 @@ def tables(sheet: DataSheet) -> dict[str, dict[str, float]]:
             "viscous": viscous / ratio**2,
             "gear_ratio": ratio,
         },
-        "friction": {"coulomb": coulomb, "breakaway": USUAL_BREAKAWAY_RATIO * coulomb},
+        "friction": {"coulomb": coulomb, "breakaway": GUESSES.breakaway_ratio * coulomb},
     }

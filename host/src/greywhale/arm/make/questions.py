@@ -6,8 +6,9 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol
 
+from greywhale.arm.limits import GUESSES
 from greywhale.arm.make.body import MATERIALS
-from greywhale.arm.make.motor import RAD_S_PER_RPM, USUAL_NO_LOAD_SHARE, USUAL_TIME_CONSTANT_S, contradiction
+from greywhale.arm.make.motor import RAD_S_PER_RPM, contradiction
 from greywhale.arm.parameters import JOINT_NAMES
 from greywhale.base.errors import UserError
 from greywhale.base.formats import units
@@ -201,10 +202,10 @@ def _motor(source: Source, at: tuple[str, int], usual: Answers) -> Answers:
         "no_load_rpm", text, units.RPM, 0.01, 1e5,
         check=lambda value: contradiction(torque, current, value * RAD_S_PER_RPM, rated),
     )  # fmt: skip
-    usual.setdefault("no_load_current_a", float(f"{USUAL_NO_LOAD_SHARE * current:.2g}"))
+    usual.setdefault("no_load_current_a", float(f"{GUESSES.no_load_share * current:.2g}"))
     text = "Current without load (a 20th of the stall current is usual)"
     ask("no_load_current_a", text, units.AMPERE, 0.0, 0.5 * current)
-    guess = USUAL_TIME_CONSTANT_S * torque / (rpm * RAD_S_PER_RPM) / ratio**2 * G_CM2_PER_KG_M2
+    guess = GUESSES.time_constant_s * torque / (rpm * RAD_S_PER_RPM) / ratio**2 * G_CM2_PER_KG_M2
     usual.setdefault("rotor_inertia_gcm2", float(f"{guess:.2g}"))
     text = "The rotor's inertia (seldom told; this guess follows from the rest)"
     ask("rotor_inertia_gcm2", text, units.GRAM_CM2, 1e-6, 1e6)

@@ -11,14 +11,12 @@ from typing import Protocol
 from greywhale.base.errors import UserError
 from greywhale.base.types import Floats
 from greywhale.board.device import Device
+from greywhale.board.limits import CALIBRATION
 from greywhale.board.pots import FULL_SCALE, POTS, counts_of
 from greywhale.board.refusal import pot_name
 from greywhale.board.stream import stream
 from greywhale.protocol import schema
 from greywhale.protocol.table import ParameterTable
-
-SHOWN_EVERY_TICKS = 100  # a live reading every tenth of a second
-LONGEST_TICKS = 600_000  # ten minutes: so much is kept, and a script is waited for
 
 
 class PersonAnswer(Enum):
@@ -59,15 +57,15 @@ class Watch:
     def ask(self, what: str, pots: Sequence[int]) -> tuple[PersonAnswer, Floats]:
         """The answer, and all counts (rows, 8) until then; these potentiometers are shown meanwhile."""
         self.guide.ask(what)
-        samples: deque[schema.Sample] = deque(maxlen=LONGEST_TICKS)
+        samples: deque[schema.Sample] = deque(maxlen=CALIBRATION.longest_ticks)
         try:
             for number, one in enumerate(stream(self.device, 1), 1):
                 samples.append(one.sample)
-                if number % SHOWN_EVERY_TICKS == 0:
+                if number % CALIBRATION.shown_every_ticks == 0:
                     self.guide.show(_reading(counts_of([one.sample], self.table)[0], pots))
                     if answer := self.guide.answer():
                         break
-                if number > LONGEST_TICKS and not self.guide.patient:
+                if number > CALIBRATION.longest_ticks and not self.guide.patient:
                     raise UserError(f"{self.device.port}: nobody has confirmed for ten minutes; begin anew.")
         finally:
             self.device.telemetry(0)

@@ -12,13 +12,12 @@ from greywhale.board.calibrate.rules import ask
 from greywhale.board.calibrate.solve import Calibration, Pose, apart, match, slipped, solve
 from greywhale.board.calibrate.sweep import Sweep, judge_sweep
 from greywhale.board.calibrate.words import MEND, joint_name, sweep_asked
+from greywhale.board.limits import CALIBRATION
 from greywhale.board.pots import POTS, read_counts
 from greywhale.board.refusal import upper_first
 from greywhale.protocol.firmware import JOINTS
 from greywhale.protocol.joints import Joints
 
-HELD_TICKS = 500  # that a pose is looked at
-SCRIPT_TRIES = 3  # of a script
 _COUNTS = {2: "two", 4: "four", 6: "six", 8: "eight"}
 
 
@@ -93,7 +92,7 @@ class Walk:
         answer, _ = self._watch.ask(what, sorted(self._pots))
         if answer is not PersonAnswer.DONE:
             return answer
-        counts = read_counts(self._watch.device, self._watch.table, HELD_TICKS)
+        counts = read_counts(self._watch.device, self._watch.table, CALIBRATION.held_ticks)
         means, moved = ask("held", counts)
         if moved:
             self._refuse(what, moved, "the arms were not held still; lay them on a support, and begin anew.")
@@ -105,7 +104,7 @@ class Walk:
     def _refuse(self, step: str, mistake: str, at_last: str) -> None:
         """Tell a mistake; a script, which mends nothing, makes it but a few times."""
         self._tries[step] += 1
-        if not self._watch.guide.patient and self._tries[step] == SCRIPT_TRIES:
+        if not self._watch.guide.patient and self._tries[step] == CALIBRATION.script_tries:
             raise UserError(f"{self._watch.device.port}: {at_last}")
         self._watch.guide.tell(mistake)
 

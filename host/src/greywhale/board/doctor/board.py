@@ -8,6 +8,7 @@ from pathlib import Path
 from greywhale import __version__
 from greywhale.base.errors import counted
 from greywhale.board.doctor.finding import Finding, Verdict
+from greywhale.board.limits import DOCTOR
 from greywhale.board.pots import POTS, pots_there
 from greywhale.board.refusal import fault_text, upper_first
 from greywhale.files.parameter_file import load_stated, not_in
@@ -15,9 +16,6 @@ from greywhale.protocol import schema
 from greywhale.protocol.joints import ALL, named, unused
 from greywhale.protocol.table import ParameterTable, physical
 
-SUPPLY_SHARE = 0.1  # a battery's voltage differs by so much between full and flat
-EEPROM_WRITES = 100_000  # of one cell, by the chip's data sheet
-MANY_SAVES = 50_000  # half of these: time to plan another board
 _MOST_SHOWN = 3  # differences that are told one by one
 _FLASH = "Flash this host's firmware with `greywhale flash`."
 _STARTS = {
@@ -80,12 +78,11 @@ def _wear(saves: int) -> Finding:
     """
     if saves == 0:
         return Finding("EEPROM", Verdict.GOOD, "No set is stored: nothing is worn.")
-    share = 100.0 * saves / EEPROM_WRITES
+    share = 100.0 * saves / DOCTOR.eeprom_writes
     much = f"{share:.1f} %" if share >= 0.1 else "less than 0.1 %"
-    usage = (
-        f"{saves:,} save{'' if saves == 1 else 's'}: {much} of the {EEPROM_WRITES:,} writes that a cell is made for."
-    )
-    if saves < MANY_SAVES:
+    times = f"{saves:,} save{'' if saves == 1 else 's'}"
+    usage = f"{times}: {much} of the {DOCTOR.eeprom_writes:,} writes that a cell is made for."
+    if saves < DOCTOR.many_saves:
         return Finding("EEPROM", Verdict.GOOD, usage)
     return Finding(
         "EEPROM",
@@ -101,7 +98,7 @@ def examine_supply(table: ParameterTable, measured_v: float | None) -> Finding:
     counts = f"The board counts on {table.supply_v:g} V for the motors"
     if measured_v is None:
         return Finding("supply", Verdict.GOOD, f"{counts}; it cannot measure them (--supply VOLTS compares).")
-    if abs(table.supply_v - measured_v) <= SUPPLY_SHARE * measured_v:
+    if abs(table.supply_v - measured_v) <= DOCTOR.supply_share * measured_v:
         return Finding("supply", Verdict.GOOD, f"{counts}, and they have {measured_v:g} V.")
     return Finding(
         "supply",

@@ -7,18 +7,18 @@ from pathlib import Path
 
 from greywhale.base.errors import UserError
 from greywhale.base.types import Progress, show_no_progress
-from greywhale.board.device import REPLY_WAIT_S, Device
+from greywhale.board.device import Device
 from greywhale.board.doctor import board, link, memory, pots
 from greywhale.board.doctor.finding import Finding, Verdict
 from greywhale.board.doctor.port import examine_port
 from greywhale.board.flash.readback import compare_image
+from greywhale.board.limits import DOCTOR, PATIENCE
 from greywhale.board.pots import read_counts, read_pots
 from greywhale.board.refusal import upper_first
 from greywhale.board.session import Session
 from greywhale.board.upload import read_parameters
 from greywhale.protocol import schema
 
-LINK_S, REST_S = 10.0, 2.0  # how long the link is tried, and the arm is watched at rest
 AT_REST = (schema.State.DISABLED, schema.State.FAULT)
 
 
@@ -65,9 +65,9 @@ def _examine_board(
         return
     report("potentiometers", 0.0)
     rails = read_pots(device, table).complaints()
-    yield from pots.examine_pots(read_counts(device, table, round(REST_S * 1000)), rails)
+    yield from pots.examine_pots(read_counts(device, table, round(DOCTOR.rest_s * 1000)), rails)
     yield link.examine_traffic(
-        link.exchange(device, table, link_s, lambda fraction: report("link", fraction)), REPLY_WAIT_S
+        link.exchange(device, table, link_s, lambda fraction: report("link", fraction)), PATIENCE.reply_wait_s
     )
 
 

@@ -13,7 +13,6 @@ from greywhale.protocol import schema
 from greywhale.protocol.table import ParameterTable
 
 _COUNTERS = ("frames_bad", "rx_overruns", "telemetry_dropped")
-_ASK_EVERY_SAMPLES = 8  # samples
 
 
 @dataclass(frozen=True)
@@ -41,7 +40,7 @@ def exchange(device: Device, table: ParameterTable, seconds: float, report: Call
             samples, lost = samples + 1, lost + one.lost
             if one.elapsed >= ticks:
                 break
-            if samples % _ASK_EVERY_SAMPLES == 0:
+            if samples % 8 == 0:
                 name, stored = held[requests % len(held)]
                 index = schema.PARAMETER_BY_NAME[name].index
                 asked = time.monotonic()

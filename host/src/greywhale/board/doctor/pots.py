@@ -12,19 +12,10 @@ import scipy  # loads a part of itself when it is first used
 
 from greywhale.base.types import Floats
 from greywhale.board.doctor.finding import Finding, Verdict
+from greywhale.board.limits import DOCTOR
 from greywhale.board.pots import POTS
 from greywhale.board.refusal import pot_name, upper_first
 from greywhale.protocol.firmware import TICK_S
-
-MEAN_TICKS = 100  # whole periods of 50 and of 60 Hz, so that hum stays out of the mean
-MOVED_COUNTS = 8.0  # a mean that wanders farther: somebody moves the arm
-# A jump leaves the median of its neighbourhood by so much, and by so many times the usual noise.
-MEDIAN_TICKS, JUMP_COUNTS, JUMP_NOISE_RATIO = 9, 6.0, 8.0
-# rms. One count is the converter's own step; a joint of 300 degrees then follows to 5 mrad.
-MUCH_NOISE_COUNTS, MOST_NOISE_COUNTS = 1.5, 4.0
-# Two that wander together and stand together are one: an open input keeps the charge of the one converted before.
-ALIKE_CORRELATION, ALIKE_COUNTS = 0.7, 3.0
-HUM_HZ, MUCH_HUM_COUNTS = (50.0, 60.0), 1.5  # amplitude in counts, its first harmonic included
 
 
 @dataclass(frozen=True)
@@ -40,19 +31,19 @@ class Quiet:
 
 def look(counts: Floats) -> Quiet:
     """Measure one potentiometer (rows,) of at least half a second."""
-    median = scipy.ndimage.median_filter(counts, MEDIAN_TICKS, mode="nearest")
+    median = scipy.ndimage.median_filter(counts, DOCTOR.median_ticks, mode="nearest")
     away = counts - median
     usual = 1.4826 * float(np.median(np.abs(away - np.median(away))))
-    jumped = np.abs(away) > max(JUMP_COUNTS, JUMP_NOISE_RATIO * usual)
+    jumped = np.abs(away) > max(DOCTOR.jump_counts, DOCTOR.jump_noise_ratio * usual)
     settled = np.where(jumped, median, counts)
-    mean = scipy.ndimage.uniform_filter1d(settled, MEAN_TICKS, mode="nearest")
+    mean = scipy.ndimage.uniform_filter1d(settled, DOCTOR.mean_ticks, mode="nearest")
     rest = settled - mean
-    humming = [_hum(rest, hertz) for hertz in HUM_HZ]
+    humming = [_hum(rest, hertz) for hertz in DOCTOR.hum_hz]
     loudest = int(np.argmax(humming))
     return Quiet(
         noise_counts=float(np.sqrt(np.mean(rest**2))),
         hum_counts=humming[loudest],
-        hum_hz=HUM_HZ[loudest],
+        hum_hz=DOCTOR.hum_hz[loudest],
         jumps=int(np.count_nonzero(np.diff(jumped.astype(np.int8)) == 1)),
         wandered_counts=float(np.ptp(mean)),
     )
@@ -64,7 +55,7 @@ def examine_pots(counts: Floats, rails: list[str]) -> list[Finding]:
     if not rails:
         findings.append(Finding("rails", Verdict.GOOD, "No potentiometer reads at a rail."))
     quiet = [look(counts[:, pot]) for pot in range(len(POTS))]
-    moved = [pot for pot, one in enumerate(quiet) if one.wandered_counts > MOVED_COUNTS and not one.jumps]
+    moved = [pot for pot, one in enumerate(quiet) if one.wandered_counts > DOCTOR.moved_counts and not one.jumps]
     if moved:
         findings.append(
             Finding(
@@ -79,7 +70,7 @@ def examine_pots(counts: Floats, rails: list[str]) -> list[Finding]:
 
 
 def _alike(counts: Floats) -> Finding:
-    rest = counts - scipy.ndimage.uniform_filter1d(counts, MEAN_TICKS, axis=0, mode="nearest")
+    rest = counts - scipy.ndimage.uniform_filter1d(counts, DOCTOR.mean_ticks, axis=0, mode="nearest")
     spread = np.sqrt(np.mean(rest**2, axis=0)) + 1e-9
     together = (rest.T @ rest) / len(rest) / np.outer(spread, spread)
     mean = counts.mean(axis=0)
@@ -87,7 +78,7 @@ def _alike(counts: Floats) -> Finding:
         (one, other)
         for one in range(len(POTS))
         for other in range(one + 1, len(POTS))
-        if together[one, other] > ALIKE_CORRELATION and abs(mean[one] - mean[other]) < ALIKE_COUNTS
+        if together[one, other] > DOCTOR.alike_correlation and abs(mean[one] - mean[other]) < DOCTOR.alike_counts
     ]
     if not pairs:
         return Finding("inputs", Verdict.GOOD, "Each reads something of its own.")
@@ -116,20 +107,20 @@ def _jumps(quiet: list[Quiet]) -> Finding:
 
 def _noise(quiet: list[Quiet]) -> Finding:
     noise = np.array([one.noise_counts for one in quiet])
-    loud = [pot for pot in range(len(POTS)) if noise[pot] > MUCH_NOISE_COUNTS]
+    loud = [pot for pot in range(len(POTS)) if noise[pot] > DOCTOR.much_noise_counts]
     if not loud:
         return Finding("noise", Verdict.GOOD, f"At most {noise.max():.1f} counts rms.")
     listed = ", ".join(f"{pot_name(pot)} {noise[pot]:.1f}" for pot in loud)
     return Finding(
         "noise",
-        Verdict.BAD if noise.max() > MOST_NOISE_COUNTS else Verdict.NOTE,
+        Verdict.BAD if noise.max() > DOCTOR.most_noise_counts else Verdict.NOTE,
         f"Noisy, in counts rms: {listed}.",
         "Put 100 nF from wiper to ground at the board's pin, keep motor wires away, feed the potentiometers from 5V.",
     )
 
 
 def _hums(quiet: list[Quiet]) -> Finding:
-    humming = [pot for pot, one in enumerate(quiet) if one.hum_counts > MUCH_HUM_COUNTS]
+    humming = [pot for pot, one in enumerate(quiet) if one.hum_counts > DOCTOR.much_hum_counts]
     if not humming:
         return Finding("hum", Verdict.GOOD, f"At most {max(one.hum_counts for one in quiet):.1f} counts of mains hum.")
     listed = ", ".join(

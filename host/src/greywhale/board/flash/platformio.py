@@ -16,7 +16,6 @@ from greywhale.board.flash.runner import Tool, run_tool
 from greywhale.board.flash.targets import FlashBoard
 
 CHECKOUT = Path(__file__).resolve().parents[5] / "firmware"
-_BUILD_LIMIT_S = 600.0  # of a first build on a slow machine
 
 
 def find_sources(named: str | Path | None) -> Path | None:
@@ -36,7 +35,7 @@ def build(firmware: Path, board: FlashBoard, report: Progress) -> Path:
     environment = platformio_environment(firmware)
     # In the firmware's folder: PlatformIO also obeys a platformio.ini of the folder that it runs in.
     command = [*_platformio(), "run", "--project-dir", str(firmware.resolve()), "--environment", board.environment]
-    tool = Tool("PlatformIO's build", command, environment, firmware, _BUILD_LIMIT_S)
+    tool = Tool("PlatformIO's build", command, environment, firmware, limit_s=600.0)
     run_tool(tool, lambda: report("building", 0.0))
     return _build_folder(firmware, environment) / board.environment / "firmware.hex"
 

@@ -14,7 +14,6 @@ from greywhale.base import system
 from greywhale.base.errors import UserError, os_reason
 from greywhale.base.processes import start
 
-_LOOK_EVERY_S = 0.1  # at the guard, while the tool runs
 GRACE_S = 5.0  # for a tool to end by itself
 _PROBLEM = re.compile(r"error|failed|denied|timeout|cannot|can't", re.IGNORECASE)
 _ESCAPE = re.compile(r"\x1b\[[0-9;]*[A-Za-z]")
@@ -63,7 +62,7 @@ def _wait(process: subprocess.Popen[bytes], tool: Tool, look: Callable[[], None]
     while True:
         look()
         try:
-            return process.communicate(timeout=_LOOK_EVERY_S)[0]
+            return process.communicate(timeout=0.1)[0]
         except subprocess.TimeoutExpired:
             if time.monotonic() > deadline:
                 raise UserError(f"{tool.name} has not ended after {tool.limit_s:g} s; try again.") from None

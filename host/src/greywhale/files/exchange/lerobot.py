@@ -25,8 +25,7 @@ FPS = 30
 ROBOT_TYPE = "greywhale"
 WINDOW = "observation.joints_window"
 _VERSION = "v3.0"
-_FILES_PER_CHUNK, _MOST_MB, _MOST_VIDEO_MB = 1000, 100, 200
-_MB = 1 << 20
+_FILES_PER_CHUNK, _MOST_MB = 1000, 100
 _FILE = "chunk-{chunk_index:03d}/file-{file_index:03d}.parquet"
 _DATA, _EPISODES = f"data/{_FILE}", f"meta/episodes/{_FILE}"
 _QUANTILES = {"q01": 0.01, "q10": 0.1, "q50": 0.5, "q90": 0.9, "q99": 0.99}
@@ -136,7 +135,7 @@ class _Dataset:
         """Append the frames to the data file, or to the next one where this would grow too large."""
         count = len(episode.places)
         size = self._path.stat().st_size if self._file is not None else 0
-        if self._file is None or size * (1 + count / self._frames_in_file) >= self.most_mb * _MB:
+        if self._file is None or size * (1 + count / self._frames_in_file) >= self.most_mb * (1 << 20):
             self.__exit__()
             self._number, self._frames_in_file = self._number + 1, 0
             chunk, file = divmod(self._number, _FILES_PER_CHUNK)
@@ -177,7 +176,7 @@ class _Dataset:
             "total_tasks": len(self._tasks),
             "chunks_size": _FILES_PER_CHUNK,
             "data_files_size_in_mb": _MOST_MB,
-            "video_files_size_in_mb": _MOST_VIDEO_MB,
+            "video_files_size_in_mb": 200,
             "data_path": _DATA,
             "video_path": None,
             "robot_type": ROBOT_TYPE,

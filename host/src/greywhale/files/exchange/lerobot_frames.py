@@ -24,8 +24,6 @@ from greywhale.protocol.joints import NAMES, Joints
 Floats32 = NDArray[np.float32]
 
 _TICKS_PER_S = 1000
-# Times of a log are whole ticks to within its six digits.
-_TICK_ROUNDING = 0.01
 _SHORT = {"follower": "pos"}
 _LEAST_FRAMES = 2  # statistics need so many
 
@@ -134,7 +132,7 @@ def _ticks(log: Log) -> Floats:
     off = _TICKS_PER_S * log.time
     ticks = np.round(off)
     off -= ticks
-    odd = np.flatnonzero(np.abs(off, out=off) > _TICK_ROUNDING)
+    odd = np.flatnonzero(np.abs(off, out=off) > 0.01)  # ticks, to within a log's six digits
     if odd.size:
         raise UserError(
             f"{log.name}: its sample at {log.time[odd[0]]:g} s is not at a whole millisecond, so frames would not lie "

@@ -19,8 +19,6 @@ from greywhale.protocol.firmware import JOINTS, TICK_S
 
 # What a log's quantities are called in system identification: outputs and inputs. Others keep their names.
 NAMES = {"follower": "y", "voltage": "u"}
-# A matrix of version 5 has fewer bytes, whoever reads it.
-_MOST_BYTES = 1 << 31
 # Of the format: kinds of elements and of arrays, and how many bytes the parts before a matrix's numbers take.
 _DOUBLE, _INT8, _INT32, _UINT32, _MATRIX, _CLASS_DOUBLE = 9, 1, 5, 6, 14, 6
 
@@ -32,7 +30,7 @@ def write(recordings: Iterable[Recording], out: Path, options: ExportOptions) ->
     (one,) = recordings
     log = one.log
     columns = {NAMES.get(quantity.name, quantity.name): quantity.values for quantity in one.quantities}
-    if log.time.size * JOINTS * log.time.itemsize >= _MOST_BYTES:
+    if log.time.size * JOINTS * log.time.itemsize >= 1 << 31:  # a matrix of version 5 has fewer
         raise UserError(
             f"{log.name}: {log.time.size} rows are more than a MAT-file of version 5 takes; use --to parquet or npz."
         )

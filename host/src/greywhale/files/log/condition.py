@@ -10,12 +10,9 @@ from numpy.typing import NDArray
 
 from greywhale.base.errors import counted
 from greywhale.files.log.check import Check, compare, rows_stated
+from greywhale.files.log.limits import GAPS
 from greywhale.files.log.units import doubt_spacing, usual_step
 
-# Fewer missing samples in a row are no gap: a link may lose some.
-_MOST_MISSING_SAMPLES = 10
-# Whatever times a file has: no two rows are closer, and no gap counts more samples.
-_SHORTEST_S, _MOST_SAMPLES = 1e-6, 1e15
 # A sentence names so many gaps one by one.
 _MOST_NAMED_GAPS = 3
 
@@ -59,12 +56,12 @@ def judge_condition(name: str, facts: Mapping[str, str], crc: int, time_s: NDArr
 
 def gaps_in(time_s: NDArray[np.float64]) -> tuple[Gap, ...]:
     """The gaps, in which more than ten samples in a row are missing, by the usual time between two rows."""
-    period = max(usual_step(time_s), _SHORTEST_S)
+    period = max(usual_step(time_s), GAPS.shortest_s)
     steps = np.diff(time_s)
     # Clocks and decimals round.
-    rows = np.flatnonzero(steps > (_MOST_MISSING_SAMPLES + 1.5) * period)
+    rows = np.flatnonzero(steps > (GAPS.most_missing_samples + 1.5) * period)
     return tuple(
-        Gap(round(after, 6), round(length, 6), round(min(length / period, _MOST_SAMPLES)) - 1)
+        Gap(round(after, 6), round(length, 6), round(min(length / period, GAPS.most_samples)) - 1)
         for after, length in zip(time_s[rows].tolist(), steps[rows].tolist(), strict=True)
     )
 

@@ -6,15 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from greywhale.files.log.layout import STATES
+from greywhale.files.log.limits import MOTORS
 from greywhale.files.log.reader import Log
 from greywhale.protocol.firmware import JOINTS
 
-# A voltage that changes by less than this (V) moves no motor: it is less than a step of the PWM.
-LEAST_V = 0.04
-# A motor that had no voltage for longer than this (s), to either side, was off; a controller at rest may pause.
-_OFF_S = 1.0
-# A joint that stays within this (rad) does not move.
-MOTION_RAD = 0.1
 _RECORD = "record with `greywhale record --enable`"
 _REMEDIES = {
     "fault": "`greywhale info` names the fault; clear it, then record again",
@@ -33,7 +28,7 @@ def driven_rows(log: Log) -> NDArray[np.bool_]:
     some = np.zeros(len(log.time), dtype=bool)
     volts = log.held("voltage")
     for joint in range(JOINTS):  # one after another: a log of an hour is large
-        some |= np.abs(volts[:, joint]) >= LEAST_V
+        some |= np.abs(volts[:, joint]) >= MOTORS.least_v
     powered = np.flatnonzero(some)
     if not powered.size or log.following.any():
         return following_rows(log)
@@ -41,7 +36,7 @@ def driven_rows(log: Log) -> NDArray[np.bool_]:
     times = log.time[powered]
     late = log.time - times[np.maximum(after - 1, 0)]
     early = times[np.minimum(after, len(powered) - 1)] - log.time
-    return ((late >= 0.0) & (late <= _OFF_S)) | ((early >= 0.0) & (early <= _OFF_S))
+    return ((late >= 0.0) & (late <= MOTORS.off_s)) | ((early >= 0.0) & (early <= MOTORS.off_s))
 
 
 def as_slice(rows: NDArray[np.bool_]) -> slice | NDArray[np.bool_]:
@@ -53,7 +48,9 @@ def as_slice(rows: NDArray[np.bool_]) -> slice | NDArray[np.bool_]:
 def undriven(log: Log, rows: NDArray[np.bool_]) -> tuple[int, ...]:
     """The joints in use whose voltage is the same in all these rows."""
     some = rows.any()
-    return tuple(joint for joint in log.joints_in_use if not some or _range(log, "voltage", rows, joint) < LEAST_V)
+    return tuple(
+        joint for joint in log.joints_in_use if not some or _range(log, "voltage", rows, joint) < MOTORS.least_v
+    )
 
 
 def tell_off(log: Log) -> str:
@@ -79,7 +76,7 @@ def tell_undriven(log: Log, rows: NDArray[np.bool_]) -> dict[int, str]:
     clauses = {}
     for joint in undriven(log, rows):
         led, moved = (_range(log, name, rows, joint) for name in ("leader", "follower"))
-        if max(led, moved) > MOTION_RAD:
+        if max(led, moved) > MOTORS.motion_rad:
             clauses[joint] = (
                 f"joint {joint} had {_volts(log, rows, joint)} in every row, while its leader moved by {led:.2g} rad "
                 f"and its follower by {moved:.2g} rad: check its motor's wires and its voltage column"

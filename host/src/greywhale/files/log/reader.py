@@ -32,16 +32,14 @@ from greywhale.files.log.layout import (
     UNFINISHED,
     Origin,
 )
+from greywhale.files.log.limits import MOTORS
 from greywhale.files.log.parameters import table_in
 from greywhale.files.log.units import doubt_angles, perhaps_degrees, refuse_other_spacing
 from greywhale.protocol.firmware import JOINTS
 from greywhale.protocol.joints import ALL, Joints, parse
 from greywhale.protocol.table import ParameterTable
 
-_LARGEST_WHOLE_NUMBER = (1 << 63) - 1  # in a header
 FOLLOWING = STATES.index("following")
-# More changes of a voltage than these, and in all so many, are no chance.
-_MOST_CHANGES_PER_PERIOD, _ENOUGH_CHANGES = 1.2, 100
 # Where each quantity stands in a row of numbers, behind the time.
 _PLACES = {name: slice(1 + place * JOINTS, 1 + (place + 1) * JOINTS) for place, name in enumerate(MOST)}
 # What a row holds; of other letters numpy takes some for blanks.
@@ -225,10 +223,10 @@ def refuse_other_times(name: str, facts: Mapping[str, str], time_s: NDArray[np.f
 
 def _refuse_other_period(name: str, origin: Origin, columns: _Columns) -> None:
     """Refuse a control period that the rows contradict: between its ends no voltage changes."""
-    if origin.period_ms is None or columns.changes < _ENOUGH_CHANGES:
+    if origin.period_ms is None or columns.changes < MOTORS.enough_changes:
         return
     length_ms = 1e3 * float(columns.time[columns.rows - 1] - columns.time[0])
-    if columns.changes > _MOST_CHANGES_PER_PERIOD * length_ms / origin.period_ms:
+    if columns.changes > MOTORS.most_changes_per_period * length_ms / origin.period_ms:
         raise UserError(
             f"{name}: period_ms is {origin.period_ms} in the header, but by the time column voltages change every "
             f"{length_ms / columns.changes:.3g} ms: it is the header of another log, or was edited."
@@ -317,7 +315,7 @@ def _every_ticks(facts: Mapping[str, str], name: str) -> int | None:
 
 def dropped_in(facts: Mapping[str, str], name: str) -> int:
     """The number of samples that the link lost, as these facts state it."""
-    return _whole(facts, "dropped_samples", name, 0, _LARGEST_WHOLE_NUMBER) or 0
+    return _whole(facts, "dropped_samples", name, 0, (1 << 63) - 1) or 0
 
 
 def _whole(facts: Mapping[str, str], key: str, name: str, least: int, most: int) -> int | None:

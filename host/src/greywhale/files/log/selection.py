@@ -12,26 +12,16 @@ import numpy as np
 
 from greywhale.base.types import Floats
 from greywhale.files.log.driven import driven_rows
+from greywhale.files.log.limits import SELECTION
 from greywhale.files.log.reader import Log
 
-# A log with more than this is cut down to it, s. Identifying takes a time that grows with the length; after this a log
-# that moves all joints tells little more.
-MOST_USED_S = 60.0
-_PIECE_S = 5.0
-# Readings are averaged over this time, s, so that speed is not noise.
-_STEP_S = 0.02
-# Slower than this (rad/s) at more than this voltage (V), a joint holds still against it.
-_STILL_RAD_S, _PUSHED_V = 0.05, 0.3
-# A longer spacing of rows, in periods, is a gap.
-_GAP_PERIODS = 1.5
 
-
-def informative(log: Log, most_s: float = MOST_USED_S) -> Log:
+def informative(log: Log, most_s: float = SELECTION.most_used_s) -> Log:
     """The pieces of a log that show most, `most_s` in all, with gaps between them; a log that is shorter as it is."""
     if len(log.time) < 2 or log.time[-1] - log.time[0] <= most_s:
         return log
     pieces = _pieces(log)
-    count = round(most_s / _PIECE_S)
+    count = round(most_s / SELECTION.piece_s)
     if len(pieces) <= count:
         return log
     usual = log.held("follower")[:: max(1, len(log.time) // 10_000)].mean(axis=0)
@@ -45,8 +35,8 @@ def _pieces(log: Log) -> list[slice]:
     wanted = driven_rows(log)
     steps = np.diff(log.time)
     period = float(np.median(steps))
-    length = max(2, round(_PIECE_S / period))
-    joined = (steps <= _GAP_PERIODS * period) & wanted[1:] & wanted[:-1]
+    length = max(2, round(SELECTION.piece_s / period))
+    joined = (steps <= SELECTION.gap_periods * period) & wanted[1:] & wanted[:-1]
     edges = np.flatnonzero(np.diff(np.concatenate(([False], joined, [False])).astype(np.int8)))
     return [
         slice(begin, begin + length)
@@ -59,11 +49,11 @@ def _shown(log: Log, piece: slice, usual: Floats) -> Floats:
     """The amount that a piece shows of five things of every joint, (20,)."""
     time = log.time[piece]
     period = float(time[-1] - time[0]) / (len(time) - 1)
-    size = max(1, round(_STEP_S / period))
+    size = max(1, round(SELECTION.step_s / period))
     angle, volts = (_averaged(log.held(name)[piece], size) for name in ("follower", "voltage"))
     speed = np.diff(angle, axis=0) / (size * period)
     bend = np.diff(speed, axis=0) / (size * period)
-    held = (np.abs(speed) < _STILL_RAD_S) & (np.abs(volts[1:]) > _PUSHED_V)
+    held = (np.abs(speed) < SELECTION.still_rad_s) & (np.abs(volts[1:]) > SELECTION.pushed_v)
     things = (speed**2, bend**2, volts**2, held, (angle - usual) ** 2)
     return np.concatenate([thing.mean(axis=0) if len(thing) else np.zeros(angle.shape[1]) for thing in things])
 

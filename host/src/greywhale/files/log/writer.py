@@ -36,11 +36,9 @@ from greywhale.protocol.firmware import JOINTS
 
 _DIGITS = (TIME_DIGITS, *(digits for digits in QUANTITIES.values() for _ in range(JOINTS)))
 _ROW = ",".join(f"%.{digits}f" for digits in _DIGITS) + ",%s\n"
-_ROWS_PER_WRITE = 256  # rows that wait for the file: a quarter of a second at most
 # What is known only at the end: the header keeps so many characters free for each number or word, and for the reason.
 _VALUE_ROOM = 12
 _REASON_ROOM = 320
-_CHECK_ROOM = 40  # for the number of rows and their CRC
 
 
 class LogWriter:
@@ -99,7 +97,7 @@ class LogWriter:
         self._last_us = time_us
         self.rows += 1
         self._waiting.append(_ROW % (time_us / 1e6, *numbers[1:], state))
-        if len(self._waiting) >= _ROWS_PER_WRITE:
+        if len(self._waiting) >= 256:  # a quarter of a second at most
             self.flush()
 
     def flush(self) -> None:
@@ -190,7 +188,7 @@ class LogWriter:
         lines.append(f"# ended_by: {cut(reason, _REASON_ROOM):<{_REASON_ROOM}}")
         text = "\n".join(lines).encode("ascii", "replace").decode("ascii")
         check = check_text(self._kept, self._crc, facts_of(line[1:] for line in text.split("\n"))) if checked else ""
-        return f"{text}\n# {KEY}: {check:<{_CHECK_ROOM}}\n".encode("ascii")
+        return f"{text}\n# {KEY}: {check:<40}\n".encode("ascii")
 
 
 def _gaps(gaps: Sequence[tuple[float, float]]) -> str:

@@ -16,7 +16,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from greywhale.arm.body import Body
-from greywhale.arm.parameters import USUAL_NOISE_V, USUAL_TRACK_RAD
+from greywhale.arm.limits import GUESSES
+from greywhale.arm.parameters import USUAL_TRACK_RAD
 from greywhale.arm.plants import column
 from greywhale.base.types import Floats
 from greywhale.identify.limits import IDENTIFICATION_LIMITS, IdentificationLimits
@@ -24,7 +25,7 @@ from greywhale.identify.space import KINDS, Parameter
 from greywhale.protocol.firmware import CONVERSIONS, JOINTS
 
 # A reading's standard deviation (rad).
-NOISE_RAD = USUAL_NOISE_V / 5.0 * USUAL_TRACK_RAD / math.sqrt(CONVERSIONS)
+NOISE_RAD = GUESSES.noise_v / 5.0 * USUAL_TRACK_RAD / math.sqrt(CONVERSIONS)
 _STEP = 1e-3  # rad, for the derivative by a zero angle
 
 

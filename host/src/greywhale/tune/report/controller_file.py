@@ -16,8 +16,6 @@ from greywhale.tune.judge.margins import Margin
 from greywhale.tune.report.summary import failing_margins, overshooting
 from greywhale.tune.result import TuningResult
 
-DIGITS = 4  # significant digits of expected values
-
 
 def save(outcome: TuningResult, path: str | Path) -> None:
     """Write controller.toml, whole or not at all."""
@@ -142,4 +140,4 @@ def _margins(margins: tuple[Margin, ...]) -> list[dict[str, Any]]:
 
 
 def _rounded(values: Iterable[float]) -> list[float]:
-    return [float(f"{value:.{DIGITS}g}") for value in values]
+    return [float(f"{value:.4g}") for value in values]

@@ -17,6 +17,7 @@ import numpy.typing as npt
 from greywhale.base.elementary import exp, log
 from greywhale.base.errors import BadUsage
 from greywhale.base.types import Controllers, Floats
+from greywhale.files.controller import NARROWEST_FLANK
 from greywhale.fuzzy.settings import (
     GAIN_UNIT,
     LARGEST_KI,
@@ -43,7 +44,6 @@ _PAIRS = (("Ne_c", "Pe_b"), ("Ze_a", "Ze_c"), ("Nce_c", "Pce_b"), ("Zce_a", "Zce
 _NEGATIVE = frozenset({"Ne_c", "Ze_a", "Nce_c", "Zce_a"})
 _UNIT = {"Kp": GAIN_UNIT, "Kd": GAIN_UNIT, "Ki": GAIN_UNIT, "Ku": 1000, CE_TICKS: 1}
 NARROWEST = LEAST_WIDTH / SET_UNIT
-NARROWEST_STATED = 0.01  # as people write it; stored, it is the next width above
 
 # Upper bounds of the paper's scaling factors. Ku = 20 V is visible in Table 8. For the others the paper prints none; 3
 # is the next whole number above all of Tables 8 and 9 (the largest is Ki = 2.072).
@@ -266,7 +266,7 @@ def check_bounds(strategy: str, bounds: Bounds) -> None:
 def storable_range(name: str) -> tuple[float, float]:
     """The smallest and the largest value that may bound a variable in a search."""
     if name in SETS:
-        return _ordered(name, NARROWEST_STATED, 1.0)
+        return _ordered(name, NARROWEST_FLANK, 1.0)
     parameter = schema.PARAMETER_BY_NAME["joint0.ku_mv" if name == "Ku" else f"joint0.{name.lower()}"]
     # A factor is searched by its logarithm, so 0 cannot be a bound; one step of the format serves as well.
     return 1.0 / _UNIT[name], parameter.maximum / _UNIT[name]
