@@ -198,9 +198,8 @@ class Session:
     def _answer(self, clients: meeting.Clients) -> None:
         """Tell those who asked what came of it, as soon as it is known."""
         if self.waiting and time.monotonic() > self._confirm_until:
-            problem = (
-                f"Switch the motors' supply off: {self.port} does not confirm the stop within {PATIENCE.confirm_s:g} s."
-            )
+            within = f"within {PATIENCE.confirm_s:g} s"
+            problem = f"Switch the motors' supply off: {self.port} does not confirm the stop {within}."
             self.confirm({"problem": problem})
         if self._confirmed.is_set():
             answer = {"pid": os.getpid(), **self._outcome, **({"goes_on": True} if self.goes_on else {})}

@@ -115,7 +115,6 @@ def _read(path: Path, notes: list[str]) -> Log:
     used = informative(whole)
     if used is not whole:
         length = whole.time[-1] - whole.time[0]
-        notes.append(
-            f"{path}: of {length:.0f} s the {SELECTION.most_used_s:g} s that show most about the arm are used."
-        )
+        used_s = SELECTION.most_used_s
+        notes.append(f"{path}: of {length:.0f} s the {used_s:g} s that show most about the arm are used.")
     return used

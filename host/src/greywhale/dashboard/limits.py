@@ -12,20 +12,12 @@ class ConnectionLimits:
     """Connections, and who of those that hold no token stays."""
 
     backlog: int = limit(
-        4096,
-        "connections",
-        "kept by the system at no cost; with fewer, new pages would wait a second",
+        4096, "connections", "kept by the system at no cost; with fewer, new pages would wait a second"
     )
     accepted: tuple[float, float] = limit(
-        (1000.0, 16.0),
-        "a second and at once",
-        "who sends at once is heard before others push it out",
+        (1000.0, 16.0), "a second, at once", "who sends at once is heard before others push it out"
     )
-    handed: tuple[float, float] = limit(
-        (200.0, 64.0),
-        "a second and at once",
-        "a program may open one for each request",
-    )
+    handed: tuple[float, float] = limit((200.0, 64.0), "a second, at once", "a program may open one for each request")
     without_descriptors_s: float = limit(1.0, "s", "until the next try; the system's are closed within seconds")
     most_strangers: int = limit(64, "without the token", "a page that loads opens six, and some browsers a few more")
     fewest_strangers: int = limit(6, "without the token", "one loading page; also with few descriptors")
@@ -44,18 +36,12 @@ class RequestLimits:
     most_body_bytes: int = limit(1 << 20, "bytes", "of a request: the words of a verb take 100 kB at most")
     most_upload_bytes: int = limit(1 << 27, "bytes", "a log of ten minutes has some 70 MB")
     most_message_bytes: int = limit(1 << 16, "bytes", "frames of the link are 50; a page sends some at once")
-    owners: tuple[float, float] = limit(
-        (100.0, 300.0), "a second and at once", "a page asks for ten things at its start"
-    )
+    owners: tuple[float, float] = limit((100.0, 300.0), "a second, at once", "a page asks for ten things at its start")
     strangers: tuple[float, float] = limit(
-        (100.0, 100.0),
-        "a second and at once",
-        "without the token: who comes too early waits",
+        (100.0, 100.0), "a second, at once", "without the token: who comes too early waits"
     )
     messages: tuple[float, float] = limit(
-        (400.0, 2000.0),
-        "a second and at once",
-        "a page that leads sends a point each 16 ms",
+        (400.0, 2000.0), "a second, at once", "a page that leads sends a point each 16 ms"
     )
     most_values: int = limit(100, "values", "of one argument, such as the logs of `evaluate`")
     longest_value_letters: int = limit(1000, "letters", "of a value: a path is shorter")
@@ -70,9 +56,7 @@ class JobLimits:
     most_running: int = limit(4, "verbs", "each may keep a processor busy")
     most_kept: int = limit(50, "verbs", "the oldest that have ended are forgotten")
     most_said_lines: int = limit(200, "lines", "kept of a verb's output, the newest")
-    end_wait_s: float = limit(
-        15.0, "s", "an interrupted verb stops motors and writes files; one that takes longer hangs"
-    )
+    end_wait_s: float = limit(15.0, "s", "an interrupted verb stops motors and writes files; longer, it hangs")
 
 
 @dataclass(frozen=True)
@@ -100,11 +84,7 @@ class BoardLimits:
     report_silence_s: float = limit(0.5, "s", "a board that says nothing is reported silent")
     ask_again_s: float = limit(6.0, "s", "then it is asked for its samples again")
     give_up_s: float = limit(7.0, "s", "then its port is let go")
-    page_silence_s: float = limit(
-        0.5,
-        "s",
-        "the motors go off; a page may be busy for some tenths of a second",
-    )
+    page_silence_s: float = limit(0.5, "s", "the motors go off; a page may be busy for some tenths of a second")
     lease_ms: int = limit(250, "ms", "the board's lease ends the motors if this host hangs")
     renew_s: float = limit(0.06, "s", "three renewals may be lost")
     no_renewal_s: float = limit(0.1, "s", "a board that sent no sample may have restarted: no lease is renewed")

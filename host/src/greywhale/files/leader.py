@@ -61,11 +61,8 @@ def _find_wrong(time_s: Floats, angles: Floats) -> tuple[int, str, str] | None:
         problem = f"{angles[row, joint]:g} rad is out of the potentiometers' range {allowed}"
         return row, COLUMNS[1 + joint], problem
     for row in np.flatnonzero(time_s - time_s[0] > LEADER.longest_s)[:1].tolist():
-        return (
-            row,
-            "time_s",
-            f"{time_s[row]:g} s is more than {LEADER.longest_s:g} s after the first row; times are in s",
-        )
+        late = f"{time_s[row]:g} s is more than {LEADER.longest_s:g} s after the first row; times are in s"
+        return row, "time_s", late
     speed = np.abs(np.diff(angles, axis=0)) / np.diff(time_s)[:, None]
     for row, joint in np.argwhere(speed > LEADER.fastest_rad_s)[:1].tolist():
         move = f"{angles[row, joint]:g} to {angles[row + 1, joint]:g} rad in {time_s[row + 1] - time_s[row]:g} s"

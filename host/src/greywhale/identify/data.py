@@ -97,9 +97,8 @@ def prepare(log: Log, filter_shift: int | None, judging: IdentificationLimits = 
     used = rows_in(runs, len(log.time))
     delay = 0.0 if filter_shift is None else CONVERSION_S + TICK_S * ((1 << filter_shift) - 1)
     noise = _noise(log.follower - smooth, used, size)
-    moving = np.array(
-        [bool(used.any() and np.ptp(log.follower[used, joint]) > MOTORS.motion_rad) for joint in range(JOINTS)]
-    )
+    least_rad = MOTORS.motion_rad
+    moving = np.array([bool(used.any() and np.ptp(log.follower[used, joint]) > least_rad) for joint in range(JOINTS)])
     places = _places(velocity, runs, limits)
     still = undriven(log, used)
     return Prepared(log, runs, period, delay, smooth, velocity, acceleration, places, noise, moving, still, judging)

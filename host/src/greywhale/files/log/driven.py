@@ -48,9 +48,8 @@ def as_slice(rows: NDArray[np.bool_]) -> slice | NDArray[np.bool_]:
 def undriven(log: Log, rows: NDArray[np.bool_]) -> tuple[int, ...]:
     """The joints in use whose voltage is the same in all these rows."""
     some = rows.any()
-    return tuple(
-        joint for joint in log.joints_in_use if not some or _range(log, "voltage", rows, joint) < MOTORS.least_v
-    )
+    least = MOTORS.least_v
+    return tuple(joint for joint in log.joints_in_use if not some or _range(log, "voltage", rows, joint) < least)
 
 
 def tell_off(log: Log) -> str:
