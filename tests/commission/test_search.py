@@ -51,8 +51,8 @@ def check(rig: SimulatedRig, tmp_path_factory: pytest.TempPathFactory) -> Iterat
 
 def varied(check: CheckOnModel, joint: int, factors: dict[int, float]) -> np.ndarray:
     rows = controllers_of(check.trials.table).copy()
-    for column, factor in factors.items():
-        rows[joint, column] = round(factor * rows[joint, column])
+    for place, factor in factors.items():
+        rows[joint, place] = round(factor * rows[joint, place])
     return rows
 
 
