@@ -4,7 +4,7 @@ import { test } from "node:test";
 import type { Board, BoardListener } from "../src/session/board";
 import { encodeFrame, FrameDecoder } from "../src/link/frames";
 import {
-  EnableReply, EnableRequest, HelloReply, HelloRequest, ParamGetReply, ParamGetRequest, SCHEMA_HASH, State, StatusReply, StatusRequest, StopReply, StopRequest, TABLE,
+  EnableReply, EnableRequest, HelloReply, HelloRequest, ParamGetReply, ParamGetRequest, SCHEMA_HASH, State, StatusReply, StatusRequest, StopReason, StopReply, StopRequest, TABLE,
   TelemetryReply, TelemetryRequest,
 } from "../src/link/schema";
 import { Session } from "../src/session/session";
@@ -86,6 +86,41 @@ for (const who of ["nobody", "another page", "this page"]) {
     assert.equal(asked.includes(EnableRequest.type), who === "nobody");
   });
 }
+
+test("motors that their lease turns off are told of, and no notice says that they are off once this page has enabled them", async ({ mock }) => {
+  mock.timers.enable({ apis: ["setInterval", "setTimeout"] });
+  let [state, stop_reason]: number[] = [State.is.disabled, StopReason.is.lease]; // of those who had them before
+  let heard!: BoardListener;
+  const session = new Session({
+    listen: (listener) => { heard = listener; },
+    send: (frame) => new FrameDecoder().feed(frame, ({ type, seq }) => {
+      if (type === EnableRequest.type) state = State.is.soft_start;
+      const status = StatusReply.pack({ ...StatusReply.unpack(zeros(StatusReply.size)), state: state!, stop_reason: stop_reason! });
+      queueMicrotask(() => heard.bytes(encodeFrame(type | 0x80, seq, type === StatusRequest.type ? status : zeros(EnableReply.size))));
+    }),
+    drive: () => undefined,
+    release: () => undefined,
+    history: () => Promise.resolve(zeros(0)),
+  });
+  heard.driver({ you: true, free: false, verb: null });
+  session.link = { open: true, port: "here", sentence: "" };
+  const look = async (): Promise<string | undefined> => {
+    mock.timers.tick(500);
+    await settled();
+    return session.notice?.sentence;
+  };
+  assert.equal(await look(), undefined);
+  heard.refused(0, 0, "The motors are off: the page that drives fell silent.");
+  assert.match((await look())!, /^The motors are off/);
+  await session.enable();
+  assert.equal(await look(), undefined);
+  [state, stop_reason] = [State.is.disabled, StopReason.is.lease];
+  assert.match((await look())!, /nobody renewed their lease/);
+  await session.enable();
+  session.tell("The log begins later.");
+  [state, stop_reason] = [State.is.disabled, StopReason.is.host];
+  assert.equal(await look(), "The log begins later.");
+});
 
 test("what was told of the link is taken back when it holds no more, and nothing else is", ({ mock }) => {
   mock.timers.enable({ apis: ["setInterval", "setTimeout"] });

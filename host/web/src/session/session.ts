@@ -3,28 +3,23 @@
 import type { Board, DriverState, LinkState } from "./board";
 import { LinkClient } from "../link/client";
 import { LinkError, RefusedError } from "../link/declared";
-import { FrameDecoder } from "../link/frames";
 import {
   ClearFaultRequest, ClutchRequest, EnableRequest, Fault, HelloReply, HelloRequest, LeadPointRequest, LeadReply, LeadRequest, NackCode,
-  ParamApplyRequest, ParamGetRequest, ParamSaveRequest, ParamSetRequest, Sample, SaveState, SCHEMA_HASH, State, StatusReply, StatusRequest, StopRequest, TABLE, TelemetryRequest,
+  ParamApplyRequest, ParamGetRequest, ParamSaveRequest, ParamSetRequest, SaveState, SCHEMA_HASH, State, StatusReply, StatusRequest, StopReason, StopRequest, TABLE, TelemetryRequest,
 } from "../link/schema";
 import { sentenceOf } from "../parts/sentence";
 import { Signal } from "../parts/signal";
+import { Intake } from "./intake";
 import { Samples } from "./samples";
 
 export const LEASE_MS = 300;
 const STATUS_EVERY_MS = 500;
 const AT_ONCE = 3; // requests on their way to a board, whose receiver is small and has other pages too
 const GREETINGS = 10; // until a person is told
-const LONGEST_DELAY_TICKS = 5000; // of a sample behind the history's
+
+const LEASE_RAN_OUT = "The motors are off: nobody renewed their lease in time. This computer was too busy, the cable was off, or the page was hidden; enable them again.";
 
 export type Notice = { readonly sentence: string; readonly kind: "error" | "info" };
-
-const TICK_AT = Sample.place("tick").at;
-
-function tickOf(payload: Uint8Array): number {
-  return new DataView(payload.buffer, payload.byteOffset).getUint32(TICK_AT, true);
-}
 
 export class Session {
   readonly samples = new Samples();
@@ -45,16 +40,18 @@ export class Session {
   counting = false;
   /** The number of times that a stop was asked for since the page was opened, here or elsewhere. */
   stopsAsked = 0;
-  /** True once the samples from before are here; until then new ones wait. */
-  private waiting: Uint8Array[] | null = [];
   private readonly client: LinkClient;
   private asking = false;
+  /** The motors that this page has enabled: asked for, seen on, or none. */
+  private own: "asked" | "on" | "" = "";
+  private toldOff = ""; // the sentence that told that the motors are off
   private reading: Promise<readonly number[]> | null = null;
-  private startTold = false;
+  private readonly intake: Intake;
 
   constructor(private readonly board: Board) {
+    this.intake = new Intake(this.samples, (from) => board.history(from), (act) => this.attempt(act));
     this.client = new LinkClient((frame) => board.send(frame), {
-      sample: (payload) => this.sampled(payload),
+      sample: (payload) => this.intake.add(payload),
       hello: (reply) => this.restarted(reply),
     });
     board.listen({
@@ -67,11 +64,11 @@ export class Session {
       stored: (crc) => this.learnStored(crc),
       refused: (seq, type, sentence) => {
         this.client.refuse(seq, type, sentence);
-        if (!type) this.tell(sentence);
+        if (!type) this.tellOff(sentence);
       },
       stopped: (sentence) => {
         this.stopsAsked++;
-        this.tell(sentence, "info");
+        this.tellOff(sentence, "info");
       },
     });
     setInterval(() => void this.askStatus(), STATUS_EVERY_MS);
@@ -117,6 +114,12 @@ export class Session {
   tell(sentence: string, kind: Notice["kind"] = "error"): void {
     this.notice = { sentence, kind };
     this.noticed.emit();
+  }
+
+  /** Tells that the motors are off, until this page enables them. */
+  private tellOff(sentence: string, kind: Notice["kind"] = "error"): void {
+    this.toldOff = sentence;
+    this.tell(sentence, kind);
   }
 
   /** Takes a notice back that holds no more. */
@@ -181,6 +184,8 @@ export class Session {
   async enable(): Promise<void> {
     this.mustDrive();
     await this.client.ask(EnableRequest, { lease_ms: LEASE_MS });
+    this.own = "asked";
+    if (this.notice?.sentence === this.toldOff) this.withdraw();
     await this.askStatus();
   }
 
@@ -202,6 +207,7 @@ export class Session {
   /** Starts the motors with the page in the leader's place, for so long at most, and sends one point: where it begins, and the step. */
   async lead(lease_ms: number, step: readonly number[]): Promise<LeadReply> {
     this.mustDrive();
+    this.own = ""; // its lease ends what it moves
     const begun = await this.client.ask(LeadRequest, { lease_ms });
     await this.client.ask(LeadPointRequest, { number: begun.next, step });
     return begun;
@@ -284,28 +290,9 @@ export class Session {
 
   // --- what comes -------------------------------------------------------------------------------------------------------
 
-  private sampled(payload: Uint8Array): void {
-    const { lastTick } = this.samples;
-    if (this.waiting) {
-      this.waiting.push(payload.slice());
-    } else if (lastTick >= 0 && tickOf(payload) > lastTick + 1) {
-      this.waiting = [payload.slice()]; // a slow page has lost pictures; who keeps the samples has them still
-      void this.attempt(() => this.fetchHistory(lastTick + 1));
-    } else if (tickOf(payload) > lastTick || this.isNewStart(tickOf(payload))) {
-      this.samples.add(payload);
-    }
-  }
-
-  /** True if an earlier tick is that of a board which has started anew, and not one that the history had as well. */
-  private isNewStart(tick: number): boolean {
-    if (!this.startTold && tick > this.samples.lastTick - LONGEST_DELAY_TICKS) return false;
-    this.startTold = false;
-    return true;
-  }
-
   private restarted(reply: HelloReply): void {
     this.hello = reply;
-    this.startTold = true;
+    this.intake.startTold = true;
     this.parameters = null;
     this.learnStored(reply.param_crc);
     void this.greet();
@@ -350,41 +337,21 @@ export class Session {
       throw new LinkError("The board's firmware is another version than this page; flash it with `greywhale flash`.");
     }
     const status = await this.client.ask(StatusRequest, {});
-    this.startTold = status.tick < this.samples.lastTick;
+    this.intake.startTold = status.tick < this.samples.lastTick;
     this.status = status;
     this.changed.emit();
     await this.client.ask(TelemetryRequest, { every: 1 });
-    if (this.waiting && !this.samples.end) await this.fetchHistory(null);
+    await this.intake.begin();
     await this.readParameters();
   }
 
-  private async fetchHistory(from: number | null): Promise<void> {
-    const before = this.samples.end;
-    try {
-      const frames = await this.board.history(from);
-      new FrameDecoder().feed(frames, ({ type, payload }) => {
-        if (type === Sample.type && payload.length === Sample.size) this.samples.add(payload);
-      });
-      if (from === null) this.samples.lost = 0;
-    } finally {
-      this.takeWaiting(this.samples.end > before);
-    }
-  }
-
-  /** Takes what came meanwhile. Where that has a gap as well, the history is asked again, as long as it gives more. */
-  private takeWaiting(askAgain: boolean): void {
-    const waiting = this.waiting ?? [];
-    this.waiting = null;
-    for (const [number, payload] of waiting.entries()) {
-      const tick = tickOf(payload);
-      const { lastTick } = this.samples;
-      if (askAgain && tick > lastTick + 1) {
-        this.waiting = waiting.slice(number);
-        void this.attempt(() => this.fetchHistory(lastTick + 1));
-        return;
-      }
-      if (tick > lastTick || this.isNewStart(tick)) this.samples.add(payload);
-    }
+  /** Motors that this page enabled went off by their lease: nobody has asked for that, so a person is told. */
+  private noteOwn({ state, stop_reason }: StatusReply): void {
+    const on = state === State.is.soft_start || state === State.is.following;
+    if (on && this.own) this.own = "on";
+    if (on || this.own !== "on") return;
+    this.own = "";
+    if (stop_reason === StopReason.is.lease) this.tellOff(LEASE_RAN_OUT);
   }
 
   private async askStatus(): Promise<void> {
@@ -393,6 +360,7 @@ export class Session {
     const { storesNothing } = this;
     try {
       this.status = await this.client.ask(StatusRequest, {});
+      this.noteOwn(this.status);
       if (this.storesNothing !== storesNothing) this.parametersChanged.emit(); // its CRC may have been here before
       if (this.parameters) await this.readParameters(); // a verb, another page or another host may have changed it
     } catch {
