@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 
 import pytest
 from playwright.sync_api import Browser, BrowserContext, Page, expect
 
+from greywhale.dashboard import server
 from tests.page import stage as stages
 from tests.page.stage import CHROMIUM, FLAGS, Stage
 
@@ -49,6 +51,26 @@ def test_a_second_tab_of_the_same_browser_needs_no_ticket(context: BrowserContex
         second.goto(address)
         expect(second.get_by_role("button", name="Take control")).to_be_visible()
         second.close()
+
+
+def test_the_page_of_a_server_that_was_started_anew_takes_the_token_of_a_new_page(
+    context: BrowserContext, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    before = Stage(tmp_path)
+    first = context.new_page()  # whose requests nobody answers meanwhile
+    first.add_init_script("requestAnimationFrame = () => 0")
+    with before.open():
+        first.goto(before.page_address)
+        expect(first.get_by_role("button", name="Let go")).to_be_visible()
+    monkeypatch.setattr(server, "listen", partial(server.listen, before.port))
+    stage = Stage(tmp_path)
+    with stage.open():
+        expect(first.get_by_role("alert")).to_contain_text("The token is missing or not this server's")
+        with stages.visit(context, stage) as second:
+            expect(second.page.get_by_role("button", name="Let go")).to_be_visible()
+            first.wait_for_function(f"window.name.endsWith('{stage.access.token}')")
+            expect(first.locator(".place")).not_to_be_empty()
+        first.close()
 
 
 def test_no_file_of_the_browser_keeps_the_token(

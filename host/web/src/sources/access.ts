@@ -2,6 +2,7 @@
 
 const CHANNEL = "greywhale-token";
 const NAME = "greywhale-token:";
+const NEWEST = "newest:"; // before a token that a ticket gave just now
 const ANSWER_MS = 300; // from another page of this browser
 
 export type Access = { readonly token: string; readonly sentence: string };
@@ -18,11 +19,12 @@ export async function findAccess(): Promise<Access> {
     if (answer.ok) ({ token } = await answer.json() as { token: string });
     else sentence = await answer.text();
   }
+  const newest = token !== "";
   token ||= window.name.startsWith(NAME) ? window.name.slice(NAME.length) : await fromOthers();
   if (token) {
     // For a reload. It lasts as long as the tab, and a foreign page there gets another one; no file keeps it, as the tab's storage.
     window.name = NAME + token;
-    tellOthers(token);
+    tellOthers(token, newest);
   }
   return { token, sentence };
 }
@@ -39,17 +41,24 @@ function fromOthers(): Promise<string> {
   const channel = new BroadcastChannel(CHANNEL);
   return new Promise<string>((found) => {
     channel.onmessage = ({ data }: MessageEvent<string>) => {
-      if (data) found(data);
+      if (data && !data.startsWith(NEWEST)) found(data);
     };
     setTimeout(() => found(""), ANSWER_MS);
     channel.postMessage("");
   }).finally(() => channel.close());
 }
 
-/** Answers pages of this browser that ask, as a second tab or a copied address does. */
-function tellOthers(token: string): void {
+/**
+ * Answers pages of this browser that ask, as a second tab or a copied address does. Pages of a server that was there before
+ * at this address hear the `newest` token, and begin anew with it.
+ */
+function tellOthers(token: string, newest: boolean): void {
   const channel = new BroadcastChannel(CHANNEL);
   channel.onmessage = ({ data }: MessageEvent<string>) => {
     if (!data) channel.postMessage(token);
+    if (!data.startsWith(NEWEST) || data === NEWEST + token) return;
+    window.name = NAME + data.slice(NEWEST.length);
+    location.reload();
   };
+  if (newest) channel.postMessage(NEWEST + token);
 }
