@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from playwright.sync_api import BrowserContext, Page, expect
 
-from greywhale.protocol.schema import PARAMETER_BY_NAME
+from greywhale.protocol.schema import PARAMETER_BY_NAME, PARAMETERS
 from tests.page import stage as stages
 from tests.page.barriers import DARK_AND_NARROW, require_no_barrier
 from tests.page.stage import Stage
@@ -13,6 +13,9 @@ from tests.page.stage import Stage
 pytestmark = pytest.mark.slow
 
 TRACKING = PARAMETER_BY_NAME["tracking_ms"]
+
+
+YAW = sum(parameter.name.startswith("joint0.") for parameter in PARAMETERS)
 
 
 def press(page: Page, *names: str) -> None:
@@ -50,3 +53,20 @@ def test_a_parameter_is_changed_and_stored_and_what_is_stored_is_told(
     expect(page.get_by_text("The board has stored what runs.")).to_be_visible()
     press(page, "Calibrate")
     expect(page.get_by_text("Earlier calibrations (2)")).to_be_visible()
+
+
+def test_rows_are_found_by_name_meaning_and_joint_and_counted(page: Page) -> None:
+    press(page, "Parameters")
+    rows, counted = page.locator(".scroll tbody tr:visible"), page.get_by_text("parameters", exact=False)
+    page.locator("body").press("/")
+    search = page.get_by_role("searchbox", name="Search parameters")
+    expect(search).to_be_focused()
+    search.press_sequentially("base YAW")
+    expect(counted.get_by_text(f"{YAW} of {len(PARAMETERS)} parameters")).to_be_visible()
+    expect(rows).to_have_count(YAW)
+    search.fill("fault nearer")
+    expect(rows).to_have_count(1)
+    expect(page.get_by_label(TRACKING.name)).to_be_visible()
+    require_no_barrier(page, DARK_AND_NARROW, views="Parameters")
+    search.fill("")
+    expect(rows).to_have_count(len(PARAMETERS))

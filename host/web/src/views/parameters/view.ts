@@ -12,6 +12,7 @@ import type { View } from "../view";
 import type { NamedText } from "../../parts/named_text";
 import { physicalText } from "../../files/log";
 import type { Calibrations } from "../../session/services";
+import { JOINT_NAMES } from "../../session/samples";
 import type { Session } from "../../session/session";
 
 export class ParametersView implements View {
@@ -25,6 +26,10 @@ export class ParametersView implements View {
   private readonly store = button("Store", () => this.act(() => this.keepRunning()));
   private readonly save = button("Save to a file", () => this.act(() => this.keep()));
   private readonly discard = button("Discard", () => this.edit(new Map()));
+  private readonly search = el("input", { type: "search", title: "Shows the rows that have all of these words (/)",
+    attrs: { placeholder: "Name or meaning", "aria-label": "Search parameters", "aria-keyshortcuts": "/" }, on: { input: () => this.filter() } });
+  private readonly found = el("span", { class: "quiet", attrs: { role: "status" } });
+  private readonly rows: readonly HTMLElement[];
   private readonly changes = el("ul", { class: "differences", attrs: { tabindex: "0", "aria-label": "Changes" } });
   private waiting = 0;
   private last: Promise<void> = Promise.resolve();
@@ -32,7 +37,7 @@ export class ParametersView implements View {
   constructor(private readonly session: Session, private readonly calibrations: Calibrations) {
     this.inputs = TABLE.parameters.map((parameter) => this.field(parameter));
     const head = tableHead("parameter", "value", "unit", "from", "to");
-    const rows = TABLE.parameters.map((parameter, place) => el("tr", { title: parameter.description },
+    this.rows = TABLE.parameters.map((parameter, place) => el("tr", { title: parameter.description },
       el("th", { attrs: { scope: "row" } }, parameter.name), el("td", {}, this.inputs[place]!), el("td", {}, parameter.unit),
       el("td", {}, physicalText(parameter, parameter.minimum)), el("td", {}, physicalText(parameter, parameter.maximum))));
     this.element = el("section", { class: "card" },
@@ -40,7 +45,9 @@ export class ParametersView implements View {
         fileField("Restore a parameter file", ".toml", (file) => file && this.act(async () => this.restore(await file)))),
       el("div", { class: "tools" }, this.apply, this.store, this.discard, this.save),
       this.said, this.kept, this.changes,
-      el("div", { class: "scroll" }, el("table", {}, head, el("tbody", {}, ...rows))));
+      el("div", { class: "tools" }, this.search, this.found),
+      el("div", { class: "scroll" }, el("table", {}, head, el("tbody", {}, ...this.rows))));
+    this.filter();
     session.parametersChanged.on(() => this.show());
     session.changed.on(() => this.refreshButtons());
     this.refreshButtons();
@@ -48,6 +55,23 @@ export class ParametersView implements View {
 
   enter(): void {
     this.act(async () => void await this.session.readParameters());
+  }
+
+  key({ key }: KeyboardEvent): boolean {
+    if (key !== "/") return false;
+    this.search.focus();
+    return true;
+  }
+
+  /** Shows the parameters whose name, meaning or joint has every word that is sought. */
+  private filter(): void {
+    const words = this.search.value.toLowerCase().split(/\s+/);
+    const shown = TABLE.parameters.filter(({ name, description }, place) => {
+      const joint = JOINT_NAMES.find((_, number) => name.startsWith(`joint${number}.`)) ?? "";
+      const text = `${name} ${description} ${joint}`.toLowerCase();
+      return !(this.rows[place]!.hidden = !words.every((word) => text.includes(word)));
+    }).length;
+    setText(this.found, `${shown} of ${TABLE.parameters.length} parameters`);
   }
 
   private field(parameter: Parameter): HTMLInputElement {
