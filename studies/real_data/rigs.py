@@ -16,6 +16,7 @@ import numpy as np
 from greywhale.arm import ArmParameters
 from greywhale.base.errors import FAILED, UserError, os_reason
 from greywhale.base.types import Floats
+from greywhale.files.exchange.bam import FULL_PWM
 from greywhale.files.log import Log
 from greywhale.files.log.layout import Origin
 from greywhale.protocol.firmware import JOINTS
@@ -104,7 +105,6 @@ SERVO_RIG = Rig(
     weight_kg=0.49,
     length_m=0.1,
 )
-SERVO_FULL = 885.0  # of the register Present PWM
 
 # Driven by torque, 1.1 N m at most: 1 V stands for 1 N m. The inertia is the authors'; 0.01 N m s is a usual damping.
 LEVER_RIG = Rig("lever_1dof", supply=15.0 * 0.075, inertia=1 / 631.36, damping=0.01)
@@ -152,7 +152,7 @@ def _seconds_of_passes(c: dict[str, Floats]) -> Floats:
 
 def read_servo(path: Path) -> Log:
     c = read_columns(path, ("time_s", "leader_0", "follower_0", "load_raw"))
-    volts = c["load_raw"] / SERVO_FULL * SERVO_RIG.supply
+    volts = c["load_raw"] / FULL_PWM * SERVO_RIG.supply
     return SERVO_RIG.log(path.stem.removeprefix("xl330_"), c["time_s"], c["leader_0"], c["follower_0"], volts)
 
 
