@@ -144,7 +144,7 @@ class Stage:
             assert self._ready.wait_for(condition, PATIENCE_MS / 1000)
 
     def let_live_no_longer(self, seconds: float) -> None:
-        """Take back what time the board was given beyond this; a point that is awaited comes within `BEFORE_POINT_S`."""
+        """Take back what time the board was given beyond this; an awaited point comes within `BEFORE_POINT_S`."""
         with self._ready:
             self._point_by_s = self._now_s + BEFORE_POINT_S
             self._until_s = min(self._until_s, self._now_s + seconds)
