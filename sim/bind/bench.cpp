@@ -236,40 +236,6 @@ void bind_person(nb::module_& m) {
       .def_prop_ro_static("EACH_WAY_S", [](nb::handle) { return bench::Person::kEachWay; });
 }
 
-void bind_drivers(nb::module_& m) {
-  using bench::Bridge;
-  using bench::Chip;
-  nb::enum_<Chip>(m, "DriverChip", "What a motor driver makes of its pins.")
-      .value("SIGN_MAGNITUDE", Chip::sign_magnitude)
-      .value("TB6612", Chip::tb6612)
-      .value("L298N", Chip::l298n)
-      .value("TWO_INPUTS", Chip::two_inputs)
-      .value("TWO_INPUTS_NSLEEP", Chip::two_inputs_nsleep)
-      .value("HALF_BRIDGES", Chip::half_bridges)
-      .value("ALWAYS_ON", Chip::always_on);
-  nb::class_<Bridge>(m, "Bridge",
-                     "Shares of a PWM period in which it puts the supply on a motor, either way, and shorts it. The "
-                     "rest of the time the motor coasts.")
-      .def(
-          "__init__",
-          [](Bridge* self, double forwards, double backwards, double shorted) {
-            new (self) Bridge{forwards, backwards, shorted};
-          },
-          "forwards"_a, "backwards"_a, "shorted"_a)
-      .def_ro("forwards", &Bridge::forwards)
-      .def_ro("backwards", &Bridge::backwards)
-      .def_ro("shorted", &Bridge::shorted)
-      .def_prop_ro("duty", &Bridge::duty);
-  m.def(
-      "bridge_of",
-      [](Chip chip, bool enable, double pwm, bool direction, double second_pwm, bool second_direction) {
-        return bench::bridge_of(chip, {enable, pwm, direction, second_pwm, second_direction});
-      },
-      "chip"_a, nb::kw_only(), "enable"_a, "pwm"_a, "direction"_a, "second_pwm"_a, "second_direction"_a);
-  m.def("mean_volts", &bench::mean_volts, "bridge"_a, "supply_v"_a, "emf_v"_a,
-        "The voltage that would drive the same mean current through a motor as this bridge does, V.");
-}
-
 using PinOf = std::tuple<char, unsigned>;
 using PwmOf = std::tuple<unsigned, char>;
 using MotorOf = std::tuple<PwmOf, PinOf>;
@@ -396,7 +362,6 @@ void bind_bench(nb::module_& m) {
   m.attr("SLICE_CYCLES") = bench::kSliceCycles;
   m.attr("CLOCK_HZ") = bench::kClockHz;
   bind_person(m);
-  bind_drivers(m);
   bind_parts(m);
   BenchClass bench(m, "Bench", "Board, arm, potentiometers, wires and a person in lock step.");
   bench

@@ -9,6 +9,7 @@ void bind_bench(nanobind::module_& m);
 void bind_board(nanobind::module_& m);
 void bind_calibrate(nanobind::module_& m);
 void bind_closed_loop(nanobind::module_& m);
+void bind_drivers(nanobind::module_& m);
 void bind_elementary(nanobind::module_& m);
 void bind_fuzzy(nanobind::module_& m);
 void bind_ideal(nanobind::module_& m);

@@ -7,6 +7,7 @@ NB_MODULE(_native, m) {
   bind_arm(m);
   bind_band_power(m);
   bind_board(m);
+  bind_drivers(m);
   bind_bench(m);
   bind_calibrate(m);
   bind_closed_loop(m);
