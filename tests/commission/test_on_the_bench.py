@@ -136,7 +136,7 @@ def send_at(motion_file: str, number: int, patch: pytest.MonkeyPatch) -> None:
 
 def commission_killed(port: str, folder: Path) -> None:
     with pytest.MonkeyPatch.context() as patch:
-        send_at("excite.csv", signal.SIGKILL, patch)
+        send_at("first-1.csv", signal.SIGKILL, patch)
         run(["-q", "commission", "-p", port, "-o", str(folder)])
 
 
