@@ -6,6 +6,9 @@ from fractions import Fraction
 
 from . import NOTICE
 from .declaration import REPLY_BIT, Declaration, Enum, Field, Group, Message, Parameter
+from .golden import frame
+
+CLEAR = ", then clear the fault"  # ends most faults' remedies; the page says it once
 
 
 def page(declaration: Declaration) -> str:
@@ -14,7 +17,7 @@ def page(declaration: Declaration) -> str:
         f"<!-- {NOTICE} -->",
         "# The serial link",
         _frame(declaration),
-        "## Messages\n\nA field's line: its first byte, type, name and meaning.",
+        "## Messages\n\nA field's line: its first byte, type, name and meaning. A request without one has no payload.",
         *_messages(declaration),
         "## Lists of values",
         *(_enum(enum) for enum in declaration.enums),
@@ -26,8 +29,12 @@ def page(declaration: Declaration) -> str:
 
 
 def _frame(declaration: Declaration) -> str:
-    return f"""For whoever writes another host, or reads a parameter's meaning. Protocol {declaration.protocol}, schema hash `0x{declaration.schema_hash:08X}`.
-1 Mbaud, 8 data bits, no parity, 1 stop bit.
+    hello = next(message for message in declaration.messages if message.name == "hello")
+    return f"""For a program of your own that talks to a board, and for the meaning of a parameter. Protocol {declaration.protocol}, schema hash
+`0x{declaration.schema_hash:08X}`. 1 Mbaud, 8 data bits, no parity, 1 stop bit.
+
+**Opening the port restarts most boards, and a byte keeps the Mega's bootloader for seconds.** So send nothing until the
+firmware's own `hello` reply comes (seq 0), or for 2 s. Requests count 1 to 255; `hello` with 1 is `{frame(hello.type, 1, b"").hex(" ")}` on the wire.
 
 ```
 wire:  COBS( type u8 | seq u8 | payload, at most {declaration.max_payload} bytes | crc u16 ) 00
@@ -35,10 +42,9 @@ wire:  COBS( type u8 | seq u8 | payload, at most {declaration.max_payload} bytes
 
 - Numbers are little-endian, two's complement. The CRC over type, seq and payload is CRC-16/CCITT-FALSE (polynomial
   0x1021, start 0xFFFF, no reflection, check value 0x29B1; Python: `binascii.crc_hqx(data, 0xFFFF)`).
-- The byte 00 stands between frames alone; a receiver that has lost its place waits for it. Empty frames mean nothing,
-  so a sender may begin with a 00.
-- A request is answered by its type + 0x{REPLY_BIT:02X} with the same seq, or by `nack`. A host that hears nothing sends
-  the same frame again. A damaged frame (length, coding, CRC) is counted and not answered.
+- The byte 00 stands between frames alone. Empty frames mean nothing, so a sender may begin with a 00.
+- A request is answered by its type + 0x{REPLY_BIT:02X} with the same seq, or by `nack`. A host that hears nothing for 0.3 s
+  sends the same frame again. A damaged frame (length, coding, CRC) is counted and not answered.
 - `hello`, and the protocol version as the first byte of its reply, stay in every version to come."""
 
 
@@ -62,17 +68,13 @@ def _messages(declaration: Declaration) -> list[str]:
             reply = replies[message.type + REPLY_BIT]
             sides = {"request": message, f"reply 0x{reply.type:02X}": reply}
         parts.append(f"### {message.name} (0x{message.type:02X})\n\n{message.description}")
-        parts += [_fields(side or "payload", one) for side, one in sides.items()]
+        parts += [_fields(side or "payload", one) for side, one in sides.items() if one.fields or side != "request"]
     return parts
-
-
-def _bytes(count: int) -> str:
-    return "1 byte" if count == 1 else f"{count or 'no'} bytes"
 
 
 def _fields(side: str, message: Message) -> str:
     """A message's size, and a line for each field: where it begins, its type and what it says."""
-    head = f"{side[0].upper()}{side[1:]}: {_bytes(message.size)}."
+    head = f"{side[0].upper()}{side[1:]}" + (f", {message.size} bytes:" if message.size else ".")
     lines, offset = [], 0
     for field in message.fields:
         lines.append(f"- {offset}, {_type(field)} `{field.name}`: {_meaning(field)}")
@@ -81,25 +83,28 @@ def _fields(side: str, message: Message) -> str:
 
 
 def _enum(enum: Enum) -> str:
-    """A line for each value: its number, name and meaning, the detail, what raises it and what to do."""
+    """A line for each value: its number, name and meaning, the detail, and of a fault what raises it and what to do."""
     lines = []
     for value in enum.values:
         cause = f" Raised when: {value.cause}." if value.cause else ""
         detail = f" Detail: {value.detail}." if value.detail not in ("", "0") else ""
-        remedy = f" {value.remedy}" if value.remedy and value.value else ""
+        remedy = f" {value.remedy.replace(CLEAR, '')}" if value.cause else ""
         end = "." if cause or detail or remedy else ""
         lines.append(f"- {value.value} `{value.name}`: {value.description}{end}{detail}{cause}{remedy}")
-    return "\n".join([f"### {enum.name}", "", enum.description, "", *lines])
+    remark = ""
+    if any(value.remedy for value in enum.values):
+        causes = any(value.cause for value in enum.values)
+        remark = " Mend the cause, then clear the fault." if causes else " `greywhale` says with each what to do."
+    return "\n".join([f"### {enum.name}", "", enum.description + remark, "", *lines])
 
 
 def _table(declaration: Declaration) -> str:
     return f"""{declaration.parameter_count} parameters, {declaration.table_size} bytes packed in index order; `param_crc` is their CRC. On the link a parameter is a raw
-integer: physical value = raw x lsb (1 where none stands). A line has index or place, name, type, range, lsb and default.
+integer: value = raw x lsb (1 where none stands). A line has index or place, name, type, range, lsb and default.
 
-The EEPROM banks have layout {declaration.layout}. Banks of older layouts lack the groups at the end, which get their
-defaults; a newer layout means the defaults. A bank is magic 0x5747 u16, layout u8, length u16, sequence u16, the table,
-and the CRC of layout to table u16. Bank A is at address 16, bank B at 272; a save writes the older one and sets its
-magic last, and a board starts from the newer of the whole ones."""
+The EEPROM holds layout {declaration.layout}. An older bank lacks groups at the end, which get their defaults; a newer layout means the
+defaults. A bank is magic 0x5747 u16, layout u8, length u16, sequence u16, the table, and the CRC of layout to table u16. Bank A
+is at address 16, bank B at 272; a save writes the older one and its magic last, and a board starts from the newer whole one."""
 
 
 def _number(raw: int, lsb: Fraction) -> str:
