@@ -81,6 +81,8 @@ def run_line(line: str) -> str:
         return "" if words[2:] == ["greywhale"] else "pip installs what is not ours"
     if words[:1] in (["git"], ["mkdir"]):
         return ""  # gets what others published
+    if words == [".", ".venv/bin/activate"]:
+        return ""  # changes a shell, and this is none
     if words[:2] == ["python", "-m"]:
         return "" if importlib.util.find_spec(words[2]) else f"there is no module {words[2]}"
     if words[:1] != ["greywhale"]:
