@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 
 from tools import ROOT
-from tools.attack.part import Row
+from tools.attack.part import Row, add_up
 from tools.attack.run import Result, digest
 from tools.generate.link.declaration import load
 
@@ -14,12 +15,11 @@ HEAD = """<!-- Written by `make attack`; change the attacks, not this page. -->
 
 # Reliability
 
-For whoever asks what can go wrong, and how often. {result} Every
-figure on this page was counted by `make attack` on the code whose digest stands below its table. A small share of the
-same attacks runs in every `make test`.
+{result} `make attack` counted every figure on this page, on the code whose digest stands
+below its table; `make test` runs a small share.
 
-A violation is a trial that broke what the section says must hold. `a/b` is a on the Mega and b on the Nano; one
-number is that of either. `min` are the minutes that all workers together took for a part.
+A violation is a trial that broke what its section says must hold. `a/b` is a on the Mega and b on the Nano; one number
+is that of either. `min` are the minutes of all workers together.
 
 **Known and left open**: a potentiometer that lies slowly or below its breakaway voltage, and a leader's reading that
 glides like a hand ([why](firmware.md#how-a-follower-must-move), [what they cost](#slow-lies-and-two-faults-at-once)); a
@@ -30,11 +30,10 @@ seconds.
 
 FAULTS_HEAD = """## The faults and how soon the motors are off
 
-From the moment at which the cause began to the drivers' enable pin, the longest of all moments on each board,
-to 0.25 ms. The [link reference](link.md#fault) has causes and remedies. Without a time: other faults may end the
-trial as well, see its row below. Not in the table: `params` is found at start, with the motors off; the times of
-`tracking`, `stalled` and `unrest` are parameters; a hang turns the motors off as `late_tick` before the watchdog
-restarts the board, if interrupts are on.
+From the cause to the drivers' enable pin, the longest of all moments, to 0.25 ms ([causes and
+remedies](link.md#fault)). Without a time: other faults may end the trial as well, see its row below. Not in the table:
+`params` is found at start, with the motors off; the times of `tracking`, `stalled` and `unrest` are parameters; a hang
+with interrupts on turns the motors off as `late_tick`.
 """
 
 COLUMNS = ("tried", "trials", "violations", "worst", "seen")
@@ -87,7 +86,7 @@ def _side_by_side(head: list[str], cells: list[list[str]]) -> tuple[list[str], l
 def _by_name(rows: Iterable[Row]) -> list[tuple[str, list[list[str]]]]:
     """The cells of each thing tried: one row, or those of the Mega and of the Nano."""
     found: dict[str, dict[str, list[str]]] = {}
-    for row in rows:
+    for row in _on_and_off(rows):
         worst = ", ".join(f"{value:.4g} {name}" for name, value in row.worst.items())
         seen = ", ".join(f"{name} {count:,}" for name, count in sorted(row.counts.items(), key=lambda one: -one[1]))
         violations = f"**{row.violations:,}**" if row.violations else "0"
@@ -97,6 +96,19 @@ def _by_name(rows: Iterable[Row]) -> list[tuple[str, list[list[str]]]]:
         (name if len(boards) == 2 or "" in boards else f"{next(iter(boards))}: {name}", list(boards.values()))
         for name, boards in found.items()
     ]
+
+
+def _on_and_off(rows: Iterable[Row]) -> list[Row]:
+    """What comes and goes ("2 of 3 ms") is one row, which names all its rhythms."""
+    rows = list(rows)
+    parted = [re.fullmatch(r"(.* )(\d+ of \d+) ms", row.tried) for row in rows]
+    rhythms: dict[str, list[str]] = {}
+    for one in filter(None, parted):
+        rhythms.setdefault(one[1], []).append(one[2])
+    names = [
+        f"{one[1]}{', '.join(rhythms[one[1]])} ms" if one else row.tried for one, row in zip(parted, rows, strict=True)
+    ]
+    return add_up(replace(row, tried=name) for row, name in zip(rows, names, strict=True))
 
 
 def _on_both(mega: str, nano: str | None = None) -> str:
