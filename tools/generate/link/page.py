@@ -119,13 +119,16 @@ def _default(parameter: Parameter) -> str:
 
 def _groups(declaration: Declaration) -> list[str]:
     parts, first = [], 0
+    known: tuple[Parameter, ...] = ()
     for group in declaration.groups:
-        parts.append(_group(group, first))
+        parts.append(_group(group, first, told=group.parameters == known))
+        known = group.parameters
         first += group.count * len(group.parameters)
     return parts
 
 
-def _group(group: Group, first: int) -> str:
+def _group(group: Group, first: int, *, told: bool) -> str:
+    """A group's places, and a line for each of its parameters, unless the group before has `told` the same."""
     step = len(group.parameters)
     last = first + group.count * step - 1
     where = f"Index {first}" + (f"..{last}" if last > first else "")
@@ -134,7 +137,7 @@ def _group(group: Group, first: int) -> str:
         where += f" Since layout {group.since}."
     lines = [
         f"- {place if group.count > 1 else first + place} {_parameter(group, one)}"
-        for place, one in enumerate(group.parameters)
+        for place, one in enumerate(() if told else group.parameters)
     ]
     return "\n".join(
         [f"### {group.title}", "", f"{group.description} {where}".removeprefix(f"{group.title}. "), "", *lines]
