@@ -19,7 +19,7 @@ from greywhale.tune.limits import TUNING_LIMITS
 from greywhale_sim import commands
 
 MADE: dict[str, Callable[[], str]] = {
-    "<!-- commands -->": commands.markdown_table,
+    "<!-- commands -->": commands.markdown_list,
     "<!-- limits: identification -->": partial(markdown_list, IDENTIFICATION_LIMITS),
     "<!-- limits: tuning -->": partial(markdown_list, TUNING_LIMITS),
     "<!-- limits: commissioning -->": partial(markdown_list, COMMISSIONING_LIMITS),

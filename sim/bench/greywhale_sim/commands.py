@@ -265,10 +265,9 @@ COMMANDS: dict[str, tuple[Callable[..., CommandAnswer], str]] = {
 }
 
 
-def markdown_table() -> str:
+def markdown_list() -> str:
     """All commands for the documentation, each with what its function says."""
-    rows = []
-    for name, (command, usage) in COMMANDS.items():
-        words = f"{name} {usage}".strip().replace("|", chr(92) + "|")
-        rows.append(f"| `{words}` | {' '.join((command.__doc__ or '').split())} |")
-    return "\n".join(["| command | does |", "|---|---|", *rows])
+    return "\n".join(
+        f"- `{f'{name} {usage}'.strip()}`: {' '.join((command.__doc__ or '').split())}"
+        for name, (command, usage) in COMMANDS.items()
+    )
