@@ -99,7 +99,7 @@ def _by_name(rows: Iterable[Row]) -> list[tuple[str, list[list[str]]]]:
 
 
 def _on_and_off(rows: Iterable[Row]) -> list[Row]:
-    """What comes and goes ("2 of 3 ms") is one row, which names all its rhythms."""
+    """One row for all rhythms of a fault that comes and goes ("2 of 3 ms"), and every other row as it is."""
     rows = list(rows)
     parted = [re.fullmatch(r"(.* )(\d+ of \d+) ms", row.tried) for row in rows]
     rhythms: dict[str, list[str]] = {}
