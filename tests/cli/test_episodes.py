@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import io
 import json
 import os
@@ -20,6 +19,7 @@ from greywhale.cli.keys import PersonAtKeys
 from greywhale.files.log import read_log
 from greywhale.protocol.schema import State
 from tests.board.fake_board import FakeBoard
+from tests.cli.test_progress import everything
 
 TASK = 'Stapel die Würfel, "klein" auf groß'
 RIGHT, LEFT, ESC = b"\x1b[C", b"\x1b[D", b"\x1b"
@@ -39,16 +39,6 @@ class BoardWithPerson(FakeBoard):
             self._next_tick = self.tick + 100
             os.write(self._keyboard, self.keys.pop(0))
             select.select([self._typed], [], [])
-
-
-def all_of(screen: int) -> str:
-    """The text on a terminal whose program has ended."""
-    shown = b""
-    with contextlib.suppress(OSError):
-        while data := os.read(screen, 4096):
-            shown += data
-    os.close(screen)
-    return shown.decode()
 
 
 def test_keys_begin_end_and_discard_and_the_terminal_is_as_before(
@@ -81,7 +71,7 @@ def test_keys_begin_end_and_discard_and_the_terminal_is_as_before(
         log = read_log(one["log"])
         assert (log.origin.task, len(log.time)) == (TASK, one["samples"])
         assert one["duration_s"] == pytest.approx(0.1, abs=0.005)
-    lines = re.split(r"[\r\n]+", all_of(screen))
+    lines = re.split(r"[\r\n]+", everything(screen))
     shown = [re.sub(r"\x1b\[[0-9;?]*[A-Za-z]", "", line) for line in lines]
     assert max(map(len, shown)) <= 80
     kept, discarded = ([line for line in shown if line.endswith(word)] for word in ("s, kept.", ": discarded."))

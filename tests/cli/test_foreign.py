@@ -8,11 +8,11 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from click.shell_completion import ShellComplete
 
 from greywhale.base.errors import FAILED
 from greywhale.cli import entry, foreign
-from greywhale.cli.verbs import VERBS, all_verbs, greywhale, place_of
+from greywhale.cli.verbs import VERBS, all_verbs, place_of
+from tests.cli.test_tracing import complete
 
 Captured = pytest.CaptureFixture[str]
 Install = Callable[..., str]
@@ -57,16 +57,11 @@ def test_a_verb_is_listed_completed_and_run_as_the_others(install: Install, caps
     assert entry.run(["--help"]) == 0
     assert "Wave with the arm." in capsys.readouterr().out
     assert place_of("wave") == f"{module}:command"
-    assert complete("wav") == ["wave"]
+    assert complete("greywhale wav") == ["wave"]
     assert entry.run(["wave"]) == 0
     assert capsys.readouterr() == ("waved\n", "")
     assert entry.run(["waev"]) == 2
     assert "Did you mean wave?" in capsys.readouterr().err
-
-
-def complete(word: str) -> list[str]:
-    found = ShellComplete(greywhale, {}, "greywhale", "_GREYWHALE_COMPLETE").get_completions([], word)
-    return [one.value for one in found]
 
 
 @pytest.mark.parametrize(
@@ -98,8 +93,8 @@ def test_a_broken_verb_is_one_sentence_that_names_its_distribution_and_all_other
     listed = capsys.readouterr().out
     assert all(f"\n  {verb} " in listed for verb in (*others, "wave"))
     assert entry.run(["compare", "--help"]) == 0
-    assert {"udev", "upload"} <= set(complete("u"))
-    assert complete("wav") == []
+    assert {"udev", "upload"} <= set(complete("greywhale u"))
+    assert complete("greywhale wav") == []
 
 
 def test_no_distribution_takes_a_verb_of_greywhales_own(install: Install, capsys: Captured) -> None:
@@ -130,7 +125,7 @@ def test_a_verb_whose_distribution_is_not_installed_says_what_to_install(
     assert captured.err == f"greywhale: {sentence}\n"
     assert entry.run(["--help"]) == 0
     assert f"\n  {verb} " not in capsys.readouterr().out
-    assert complete(verb) == []
+    assert complete(f"greywhale {verb}") == []
 
 
 def test_greywhales_own_verbs_look_for_no_others(monkeypatch: pytest.MonkeyPatch, capsys: Captured) -> None:

@@ -4,15 +4,14 @@ from __future__ import annotations
 
 import subprocess
 import sys
-from collections.abc import Iterator
 from pathlib import Path
 
-import click
 import pytest
 
 from greywhale.cli.entry import run
 from greywhale.cli.verbs import greywhale
 from tests.cli.example_log import write_log
+from tools.docs.schemas import commands
 
 Captured = pytest.CaptureFixture[str]
 
@@ -158,22 +157,10 @@ FOLDERS = ("demo", "commission", "reproduce")
 
 def test_every_verb_that_writes_a_file_is_among_them() -> None:
     """Those with --overwrite; the folders of demo, commission and reproduce belong to these verbs."""
-    options = dict(options_of(greywhale))
+    options = {verb: {one.name for one in command.params} for verb, command in commands(greywhale)}
     writes = {verb for verb, names in options.items() if verb not in FOLDERS and OUTPUTS & names} | {"params backup"}
     assert writes == {verb for verb, names in options.items() if "overwrite" in names}
     assert writes == {" ".join(words[: 2 if words[0] in ("params", "arm") else 1]) for words in WRITERS}
-
-
-def options_of(group: click.Group, before: str = "") -> Iterator[tuple[str, set[str]]]:
-    """Every verb, and what it takes."""
-    context = click.Context(group)
-    for name in group.list_commands(context):
-        command = group.get_command(context, name)
-        assert command is not None
-        if isinstance(command, click.Group):
-            yield from options_of(command, f"{before}{name} ")
-        else:
-            yield f"{before}{name}", {str(one.name) for one in command.params}
 
 
 @pytest.mark.slow

@@ -29,7 +29,7 @@ KEY = re.compile(r"^    (\w+): .*?  # (.+)$", re.MULTILINE)
 def answers() -> dict[str, Any]:
     """The type that each verb answers with, by its words, and that of a failure under "error"."""
     found = {"error": Failure}
-    for verb, command in _commands(greywhale):
+    for verb, command in commands(greywhale):
         answer = getattr(command.callback, ANSWER)
         found[verb] = pkgutil.resolve_name(answer) if isinstance(answer, str) else answer
     return found
@@ -105,13 +105,13 @@ def _notes(kind: Any) -> dict[str, str]:
     return found | dict(KEY.findall(source))
 
 
-def _commands(group: click.Group, above: str = "") -> Iterator[tuple[str, click.Command]]:
+def commands(group: click.Group, above: str = "") -> Iterator[tuple[str, click.Command]]:
     """The commands that run something, by their words."""
     context = click.Context(group)
     for name in group.list_commands(context):
         command = group.get_command(context, name)
         assert command is not None
         if isinstance(command, click.Group):
-            yield from _commands(command, f"{above}{name} ")
+            yield from commands(command, f"{above}{name} ")
         else:
             yield f"{above}{name}", command
