@@ -31,16 +31,29 @@ def at_rail(millivolts: float, follower: bool, pattern: tuple[int, int] | None =
     return inject
 
 
-def freeze(arm: ArmOnBoard, joint: int) -> None:
-    """The wiper slips on its shaft: it stays where it is, with the noise of any reading."""
-    kept: list[float] = []
+def show(reading: Callable[[ArmOnBoard, float, float, float], float]) -> Inject:
+    """The follower's potentiometer shows another voltage (mV) than it should: by the arm, what it should, what it
+    should have when this began, and the time since then (s).
+    """
 
-    def fault(volts: Floats, since: float) -> None:
-        if not kept:
-            kept.append(volts[4 + joint])
-        volts[4 + joint] = kept[0] + arm.random.normal(0.0, NOISE_MV)
+    def inject(arm: ArmOnBoard, joint: int) -> None:
+        begun: list[float] = []
 
-    arm.pot_fault = fault
+        def fault(volts: Floats, since: float) -> None:
+            right = float(volts[4 + joint])
+            if not begun:
+                begun.append(right)
+            volts[4 + joint] = reading(arm, right, begun[0], since)
+
+        arm.pot_fault = fault
+
+    return inject
+
+
+# The wiper slips on its shaft: it stays where it is, with the noise of any reading.
+freeze = show(lambda arm, right, begun, since: begun + arm.random.normal(0.0, NOISE_MV))
+# It turns the other way about the place where it is now.
+reverse = show(lambda arm, right, begun, since: 2 * begun - right)
 
 
 def read_neighbour(arm: ArmOnBoard, joint: int) -> None:
@@ -71,18 +84,6 @@ def leave_floating(follower: bool) -> Inject:
         arm.board.set_floating(1 << (joint + 4 * follower))
 
     return inject
-
-
-def reverse(arm: ArmOnBoard, joint: int) -> None:
-    """It turns the other way about the place where it is now."""
-    middle: list[float] = []
-
-    def fault(volts: Floats, since: float) -> None:
-        if not middle:
-            middle.append(volts[4 + joint])
-        volts[4 + joint] = 2 * middle[0] - volts[4 + joint]
-
-    arm.pot_fault = fault
 
 
 def _away(volts: Floats, pot: int) -> float:

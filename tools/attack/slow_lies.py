@@ -8,7 +8,7 @@ from collections.abc import Callable
 from greywhale.base.types import Floats
 from tools.attack.arm_faults import block, reverse_motor
 from tools.attack.arm_on_board import SLICE_S, ArmOnBoard, PotFault
-from tools.attack.pot_lies import MIDDLE_MV, Inject, freeze, jump, leader, reverse, shift
+from tools.attack.pot_lies import MIDDLE_MV, Inject, freeze, jump, leader, reverse, shift, show
 
 ALIKE_MV = 5.0  # one count of the converter
 
@@ -24,30 +24,20 @@ def drift(rad_per_s: float) -> Callable[[float], float]:
 def lose_gain(gain: float, takes_s: float) -> Inject:
     """The follower's reading turns about the middle of its track by less and less."""
 
-    def inject(arm: ArmOnBoard, joint: int) -> None:
-        def fault(volts: Floats, since: float) -> None:
-            now = 1.0 - (1.0 - gain) * min(1.0, since / takes_s)
-            volts[4 + joint] = MIDDLE_MV + now * (volts[4 + joint] - MIDDLE_MV)
+    def reading(arm: ArmOnBoard, right: float, begun: float, since: float) -> float:
+        now = 1.0 - (1.0 - gain) * min(1.0, since / takes_s)
+        return MIDDLE_MV + now * (right - MIDDLE_MV)
 
-        arm.pot_fault = fault
-
-    return inject
+    return show(reading)
 
 
 def turn_less(gain: float) -> Inject:
     """From where it is the follower's reading goes only a share of the joint's way."""
+    return show(lambda arm, right, begun, since: begun + gain * (right - begun))
 
-    def inject(arm: ArmOnBoard, joint: int) -> None:
-        here: list[float] = []
 
-        def fault(volts: Floats, since: float) -> None:
-            if not here:
-                here.append(volts[4 + joint])
-            volts[4 + joint] = here[0] + gain * (volts[4 + joint] - here[0])
-
-        arm.pot_fault = fault
-
-    return inject
+# The reading stays as it is, without any noise.
+hold_still = show(lambda arm, right, begun, since: begun)
 
 
 def come_late(seconds: float) -> Inject:
@@ -77,17 +67,6 @@ def exchange(other: Callable[[int], int]) -> Inject:
         arm.pot_fault = fault
 
     return inject
-
-
-def hold_still(arm: ArmOnBoard, joint: int) -> None:
-    """The reading stays as it is, without any noise."""
-    kept: list[float] = []
-
-    def fault(volts: Floats, since: float) -> None:
-        kept.append(volts[4 + joint])
-        volts[4 + joint] = kept[0]
-
-    arm.pot_fault = fault
 
 
 def both(*injects: tuple[Inject, int]) -> Inject:
