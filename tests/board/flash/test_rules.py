@@ -14,23 +14,6 @@ def test_both_have_the_rules_of_shared_flash_toml() -> None:
     assert flash.main(["--check"]) == 0
 
 
-def test_a_pattern_is_written_in_both_languages() -> None:
-    pattern = "'d' #page>2 .. at<3 page* kept*count 0e"
-    assert flash.spell(pattern, flash.PYTHON) == (
-        "[0x64, *high_first(len(page), 2), ANY, *low_first(at, 3), *page, *[KEPT] * count, 0x0e]"
-    )
-    assert flash.spell(pattern, flash.TYPESCRIPT) == (
-        "[0x64, ...highFirst(page.length, 2), ANY, ...lowFirst(at, 3), ...page, ...kept(count), 0x0e]"
-    )
-    assert flash.values(flash.PYTHON, pattern) == "page: Sequence[int], at: int, count: int"
-
-
-@pytest.mark.parametrize("pattern", ["0e 1", "1g", "'a", "Page*", "at>"])
-def test_what_is_no_pattern_is_named(pattern: str) -> None:
-    with pytest.raises(ValueError, match="is no pattern"):
-        flash.spell(pattern, flash.PYTHON)
-
-
 @pytest.mark.parametrize("heard", [b"", b"\x14", b"\x14abc", b"\x14abcd", b"\x15abc\x10", b"\x14abc\x10\x10"])
 def test_another_answer_than_that_to_the_question_is_none(heard: bytes) -> None:
     assert keep(heard, Stk500V1.signature().answer) is None
