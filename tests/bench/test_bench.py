@@ -19,19 +19,6 @@ def test_run_takes_whole_slices_and_never_drifts(board: Any, bench: Bench) -> No
     assert len(board.millivolts) == 401
 
 
-def test_sign_magnitude_drive_while_the_drivers_are_on(board: Any, bench: Bench) -> None:
-    board.pins[ENABLE] = 1
-    board.pins[DUTY] = [0.5, 1.0, 0.25, 0.0]
-    board.pins[DIRECTION] = [1, 0, 0, 1]
-    bench.run_slices(2)
-    assert bench.voltages.tolist() == [6.0, -12.0, -3.0, 0.0]
-    assert bench.motors_enabled
-    board.pins[ENABLE] = 0
-    bench.run_slices(1)
-    assert bench.voltages.tolist() == [0.0] * 4
-    assert not bench.motors_enabled
-
-
 def test_follower_is_held_until_enabled_then_free(board: Any, plant: Any, bench: Bench) -> None:
     bench.run(0.01)
     assert plant.voltages == []
