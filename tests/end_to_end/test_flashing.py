@@ -7,7 +7,6 @@ from pathlib import Path
 
 import pytest
 
-from greywhale.base.errors import UserError
 from greywhale.board import flash
 from greywhale.board.flash import platformio
 from greywhale.board.flash.bootloader import Bootloader, Dialect, find_bootloader
@@ -32,15 +31,6 @@ def test_flash_a_mega_that_an_old_program_fills(start_bench: Start, tmp_path: Pa
     bench = start_bench("--firmware", str(tmp_path / "old.hex"))
     hello = flash.flash(bench.port, "mega", firmware_dir=platformio.CHECKOUT)
     assert (hello.schema_hash, hello.board) == (schema.SCHEMA_HASH, schema.Board.MEGA2560)
-
-
-@pytest.mark.slow
-def test_flash_a_blank_nano(start_bench: Start) -> None:
-    bench = start_bench("--blank", board="nano")
-    assert bench.command("status")["in_bootloader"]
-    hello = flash.flash(bench.port, "nano", hex_file=IMAGES["nano"])
-    assert (hello.schema_hash, hello.board) == (schema.SCHEMA_HASH, schema.Board.NANO328)
-    assert not bench.command("status")["in_bootloader"]
 
 
 @pytest.mark.slow
@@ -121,30 +111,3 @@ def test_flash_a_newer_nano(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> 
         assert bench.server.board.flash()[: len(image)] == image
         new_nano = Bootloader(Dialect(1, 115200), BOARDS["nano"].signature)
         assert find_bootloader(bench.port, [new_nano.dialect], []) == new_nano
-
-
-@pytest.mark.slow
-def test_a_port_that_goes_away_in_the_middle_is_named(start_bench: Start) -> None:
-    bench = start_bench("--blank", "--speed", "max")
-
-    def unplug(what: str, fraction: float) -> None:
-        if what == "writing" and fraction > 0.5:
-            bench.close()
-
-    words = rf"^{bench.port} went away while it was being flashed; connect the board and flash it again\.$"
-    with pytest.raises(UserError, match=words):
-        flash.flash(bench.port, "mega", hex_file=IMAGES["mega"], report=unplug)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    ("board", "expected"),
-    [
-        ("mega", Bootloader(Dialect(2, 115200), b"\x1e\x98\x01")),
-        ("nano", Bootloader(Dialect(1, 57600), b"\x1e\x95\x0f")),
-    ],
-)
-def test_the_real_bootloaders_tell_their_board(board: str, expected: Bootloader) -> None:
-    dialects = [Dialect(2, 115200), Dialect(1, 115200), Dialect(1, 57600)]
-    with lock_step("--blank", "--board", board) as bench:
-        assert find_bootloader(bench.port, dialects, []) == expected
