@@ -146,8 +146,12 @@ def test_a_board_that_is_named_wrongly_is_recognised_by_its_port_and_its_firmwar
 
 @pytest.mark.parametrize(
     ("signature", "size", "words"),
-    [(ATMEGA328P, 600, "for an Arduino Nano"), (None, MEGA.space + 1, "reaches up to byte 253953")],
-    ids=["of the other board", "over the bootloader"],
+    [
+        (ATMEGA328P, 600, "for an Arduino Nano"),
+        (b"\x1e\x97\x03", 600, "1e9703"),
+        (None, MEGA.space + 1, "reaches up to byte 253953"),
+    ],
+    ids=["of the other board", "of another one", "over the bootloader"],
 )
 def test_a_board_gets_no_image_that_is_not_for_it(
     bootloader: Version2, port: str, tmp_path: Path, signature: bytes | None, size: int, words: str

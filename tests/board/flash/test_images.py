@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from greywhale.base.errors import UserError
-from greywhale.board.flash.images import Record, check_image, read_image
+from greywhale.board.flash.images import Record, read_image
 from greywhale.board.flash.rules import BOARDS
 from greywhale.protocol import schema
 from tests.board.flash.hex_files import SOURCES, hex_text, image_record, record, write_image
@@ -58,20 +58,3 @@ def test_a_damaged_file_is_named_with_its_line(content: bytes, words: str, tmp_p
     with pytest.raises(UserError, match=rf"bad\.hex.*{words}") as caught:
         read_image(path)
     assert caught.value.exit_code == 2
-
-
-def test_an_image_for_the_other_board_is_refused(tmp_path: Path) -> None:
-    nano = read_image(write_image(tmp_path / "nano.hex", NANO.signature))
-    check_image(nano, NANO, "/dev/ttyUSB0")
-    with pytest.raises(UserError, match=f"^{nano.path}: .*Arduino Nano .* on /dev/ttyUSB0 is an Arduino Mega 2560"):
-        check_image(nano, MEGA, "/dev/ttyUSB0")
-    other = read_image(write_image(tmp_path / "other.hex", b"\x1e\x97\x03"))
-    with pytest.raises(UserError, match="1e9703"):
-        check_image(other, MEGA, "/dev/ttyUSB0")
-
-
-def test_an_image_that_does_not_fit_is_refused_whoever_made_it(tmp_path: Path) -> None:
-    image = read_image(write_image(tmp_path / "large.hex", size=NANO.space + 1))
-    check_image(image, MEGA, "/dev/ttyUSB0")
-    with pytest.raises(UserError, match="30721, .*Nano.* 30720"):
-        check_image(image, NANO, "/dev/ttyUSB0")
