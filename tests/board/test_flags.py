@@ -37,11 +37,6 @@ def options_in(sentence: str) -> set[str]:
     return set(re.findall(r"(?<![\w-])--[a-z][a-z-]*", alone))
 
 
-def test_a_command_and_its_options_are_told_apart() -> None:
-    assert options_in("run `greywhale calibrate --joints 0,1`, or use a larger --every") == {"--every"}
-    assert options_in("a - b -- c") == set()
-
-
 def test_what_all_verbs_with_a_board_share_names_no_option_of_one() -> None:
     modules = [
         module
