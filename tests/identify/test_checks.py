@@ -69,14 +69,6 @@ def off(log: Log) -> Log:
     return replace(log, voltage=0.0 * log.voltage, state=np.full(len(log.time), "disabled"))
 
 
-def faulty(log: Log) -> Log:
-    return replace(off(log), state=np.full(len(log.time), "fault"))
-
-
-def powerless(log: Log) -> Log:
-    return replace(log, voltage=0.0 * log.voltage)
-
-
 def led_in_vain(log: Log) -> Log:
     """The motors had no supply."""
     return replace(log, follower=0.01 * log.follower)
@@ -105,8 +97,6 @@ def three_of_four_at_rest(log: Log) -> Log:
     ("spoil", "evidence"),
     [
         (off, r"the motors were off in all 9.04 s \(state disabled, 0 V\), .*record --enable"),
-        (faulty, r"the motors were off in all 9.04 s \(state fault, 0 V\), .*greywhale info"),
-        (powerless, r"no motor's voltage changes in all 9.04 s \(state following, 0 V\), .*voltage columns"),
         (led_in_vain, r"no joint moved: .* the leader moved by \d.* rad, so check the motors' supply"),
         (barely_powered, r"only 2\.0 s of it"),
         (three_of_four_at_rest, r"joint 0 had 0 V in every row, while its leader moved by \d.* rad and its follower"),
