@@ -121,15 +121,6 @@ def test_elitist_leaders_are_the_best_ever_seen(elitist: bool, second: list[floa
     assert optimiser.ask() == pytest.approx(np.full((3, 1), mean))
 
 
-def test_wolves_that_leave_are_put_onto_the_bound() -> None:
-    # a = 2, r1 = 0 is A = -2: far beyond.
-    source = Scripted(column(0.95, 0.05, 0.9), 0.0, 0.999)
-    optimiser = GreyWolf(BOX, 9, source, pack=3)
-    optimiser.ask()
-    optimiser.tell([1, 2, 3])
-    assert optimiser.ask().max() == 10.0
-
-
 def test_whale_encircles_the_prey_or_another_or_swims_the_spiral() -> None:
     # a = 1.5, r2 = 0.75 is C = 1.5. r1 = 0.75 is A = 0.75: 1 - 0.75 |1.5 - 3|. r1 = 0.9 is A = 1.2: 5 - 1.2 |7.5 - 3|.
     # p = 0.5: l = 0.5, |1 - 3| e^0.5 cos(pi) + 1.
