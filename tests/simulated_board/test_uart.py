@@ -99,16 +99,6 @@ int main(void) { UBRR0 = 0; UCSR0B = _BV(RXEN0) | _BV(TXEN0) | _BV(RXCIE0); slee
 """
 
 
-def test_an_interrupt_driven_echo_at_1_megabaud_loses_nothing(program: MakeProgram) -> None:
-    run = program(ECHO).start()
-    run.run(1000)
-    data = bytes(range(256)) * 4
-    run.board.uart_send(data)
-    run.run(160 * 1030)
-    assert run.board.uart_receive() == data
-    assert run.board.stats().rx_overruns == 0
-
-
 def test_bytes_to_a_board_without_power_are_lost(program: MakeProgram) -> None:
     run = program(ECHO)
     run.board.uart_send(b"early")
