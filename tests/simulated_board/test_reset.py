@@ -7,7 +7,7 @@ import pytest
 
 from tests.simulated_board.avr import MakeProgram
 
-PORF, EXTRF, WDRF = 1, 2, 8
+PORF, EXTRF = 1, 2
 
 CAUSE = """
 volatile uint8_t cause __attribute__((section(".noinit"))), kept __attribute__((section(".noinit")));
@@ -92,29 +92,6 @@ def test_the_converters_reference_is_the_supply(program: MakeProgram) -> None:
     run.board.set_millivolts(np.full(8, 2000.0))
     run.board.set_supply(4000)
     assert run.finish().u16("seen") == [512]
-
-
-WATCHDOG = """
-volatile uint8_t causes[2] __attribute__((section(".noinit"))), count __attribute__((section(".noinit")));
-int main(void) {
-    uint8_t cause = MCUSR; MCUSR = 0; wdt_disable();
-    if (cause & _BV(PORF)) count = 0;
-    causes[count++] = cause;
-    if (count == 2) DONE();
-    wdt_enable(WDTO_60MS);
-    for (uint8_t i = 0; i < 20; ++i) { wdt_reset(); __builtin_avr_delay_cycles(160000); }
-    for (;;);
-}
-"""
-
-
-@pytest.mark.parametrize("chip", ["atmega2560", "atmega328p"])
-def test_the_watchdog_resets_a_hung_program_after_its_time(program: MakeProgram, chip: str) -> None:
-    run = program(WATCHDOG, chip).finish(limit=6_000_000)
-    assert run.u8("causes") == [PORF, WDRF]
-    stats = run.board.stats()
-    assert (stats.watchdog_resets, stats.resets) == (1, 2)
-    assert run.board.cycle == pytest.approx(19 * 160_000 + 64e-3 * 16e6, rel=0.01)
 
 
 def test_neither_its_reset_nor_the_reset_pin_ends_the_watchdog_but_a_power_cut_does(program: MakeProgram) -> None:
