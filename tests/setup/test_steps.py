@@ -100,14 +100,3 @@ def test_a_folder_that_cannot_be_written_is_named(monkeypatch: pytest.MonkeyPatc
     monkeypatch.setattr(setup, "ROOT", tmp_path)
     with pytest.raises(SetupError, match="build cannot be written"), setup.lock_folder():
         pass
-
-
-def test_the_first_set_up_alone_says_how_long_it_takes(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    monkeypatch.setattr(stamps, "STAMPS", tmp_path / "stamps")
-    setup.tell_how_long()
-    assert capsys.readouterr().out.startswith("set-up: the first time this takes about 2 minutes, ")
-    stamps.set_current("venv", "some")
-    setup.tell_how_long()
-    assert capsys.readouterr().out == ""
