@@ -14,7 +14,7 @@ from greywhale.loop.traces import Traces
 from greywhale.protocol import schema
 from greywhale.protocol.firmware import ANGLE_LSB, TICK_S
 
-LENGTH_S = 1.0
+LENGTH_S = 1.0  # the unit in which an adaptation counts
 ROWS = round(LENGTH_S / TICK_S)
 _VOLT = schema.Sample.LSB["voltage"]
 

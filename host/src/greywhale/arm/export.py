@@ -18,7 +18,7 @@ from greywhale.arm.plants import COLUMNS, Plants
 
 LINK_NAMES = ("base", "upper_arm", "wrist", "hand")
 JOINT_IDS = ("base_yaw", "shoulder_pitch", "wrist_pitch", "wrist_roll")
-_AXES = ((0, 1, 0), (0, 0, 1), (0, 0, 1), (1, 0, 0))
+_AXES = ((0, 1, 0), (0, 0, 1), (0, 0, 1), (1, 0, 0))  # of the joints
 # MuJoCo's friction and stops are soft; this is as stiff as it takes them at that step.
 _STIFF = {
     "solreffriction": "0.0005 1",

@@ -5,7 +5,7 @@ from __future__ import annotations
 from greywhale import _native
 from greywhale.arm.parameters import ArmParameters, PotentiometerBank
 
-LONGEST_STEP_S = 0.25e-3
+LONGEST_STEP_S = 0.25e-3  # of the integrator
 
 
 class Arm(_native.Arm):

@@ -28,7 +28,7 @@ from greywhale.protocol.firmware import JOINTS
 from greywhale.protocol.table import ParameterTable
 from greywhale.tune.search.training import clip_motion, reach
 
-SEED = 7
+SEED = 7  # of the noise
 LEAST = 1e-12  # rad², the error of a joint that is not in use
 
 

@@ -9,7 +9,7 @@ from typing import Any
 from greywhale.base.limits import changed
 from greywhale.commission.limits import COMMISSIONING_LIMITS, CommissioningLimits
 
-ROUNDS, TRIALS = 2, 8
+ROUNDS, TRIALS = 2, 8  # unless somebody asks for others
 
 
 @dataclass(frozen=True)

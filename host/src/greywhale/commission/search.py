@@ -46,7 +46,7 @@ from greywhale.tune.search.space import Space
 
 NONE = np.zeros(JOINTS, dtype=bool)
 NO_LIMIT_V = np.full(JOINTS, np.inf)  # of ripple in the margins' rests: the check's is limited
-LEAST_RAD2 = 1e-9
+LEAST_RAD2 = 1e-9  # keeps a division from 0
 KP, KD, KI, KU, CE_TICKS = (CONTROLLER_COLUMNS.index(name) for name in ("kp", "kd", "ki", "ku_mv", "ce_ticks"))
 GAINS = [KP, KD, KI, KU]
 

@@ -28,8 +28,8 @@ from greywhale.identify.windows import WindowResidual
 from greywhale.loop.leader import SLICE_S
 from greywhale.protocol.firmware import ANGLE_LSB, CONVERTER_COUNTS, TICK_S, pwm_steps
 
-LOGS = 6
-STEPS = 8
+LOGS = 6  # simulated; more would only take longer
+STEPS = 8  # of a fit; more would only take longer
 # Moments of a tick at which its four conversions hold their input, as shares of it.
 MOMENTS = (0.1, 0.3, 0.5, 0.7)
 

@@ -22,10 +22,10 @@ from greywhale.loop.led_model import LEAD_TICKS
 from greywhale.protocol.firmware import JOINTS, TICK_S
 from greywhale.protocol.table import ParameterTable
 
-COMPARED_TICKS = 5
-STEPS_PER_TICK = 2
-BENCH_STEPS = 4
-SEED = 1
+COMPARED_TICKS = 5  # from one compared row to the next
+STEPS_PER_TICK = 2  # of the plant, in a search
+BENCH_STEPS = 4  # of the plant in a tick, as on the bench
+SEED = 1  # of the noise
 
 
 class Loop:

@@ -11,7 +11,7 @@ from threadpoolctl import threadpool_limits
 from greywhale.base.types import Floats
 from greywhale.identify.space import Space
 
-TOLERANCE = 1e-4
+TOLERANCE = 1e-4  # of the least squares, as a share of cost and numbers
 
 
 def least_squares_fit(

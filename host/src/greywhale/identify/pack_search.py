@@ -14,8 +14,8 @@ from greywhale.base.types import Floats, Progress
 from greywhale.identify.closed_loop import Loop
 from greywhale.optimise import create
 
-AGENTS = 10
-ITERATIONS = 50
+AGENTS = 10  # the paper's
+ITERATIONS = 50  # the paper's
 BUDGET = AGENTS * (ITERATIONS + 1)
 
 

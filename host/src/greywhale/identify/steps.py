@@ -22,7 +22,7 @@ from greywhale.protocol.firmware import JOINTS
 
 DAMPINGS = (0.02, 0.3, 5.0, 100.0)  # times a block's last damping
 LARGEST_STEP = 1.0  # of a searched number, in doubts
-MOST_DAMPING = 1e8
+MOST_DAMPING = 1e8  # with more of it no step moves anything
 ENOUGH = 2e-4  # the fit ends when a step gains less than this share of the cost
 
 

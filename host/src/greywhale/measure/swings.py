@@ -29,10 +29,10 @@ from greywhale.protocol.firmware import JOINTS, TICK_S
 Singles = npt.NDArray[np.float32]
 Duties = npt.NDArray[np.int16]
 
-MEAN_S = 0.2
-RATTLE_BAND_HZ = (6.0, 40.0)
-CHATTER_SHARE = 1 / 3
-RIPPLE_S = 0.025
+MEAN_S = 0.2  # over which a motion without its swings is the mean
+RATTLE_BAND_HZ = (6.0, 40.0)  # where swings are rattling
+CHATTER_SHARE = 1 / 3  # of full PWM: a larger swing of the duty is chatter
+RIPPLE_S = 0.025  # ripple is what a voltage does beyond its mean over this
 
 
 @dataclass(frozen=True)
@@ -83,7 +83,7 @@ def turns_at_end(time_s: Floats, leader: Floats, follower: Floats) -> Integers:
 
 REST_AFTER_S = 0.7  # a follower may still be on its way for so long after its leader stopped
 STILL_RAD = 0.005  # the leader rests within this
-SHORTEST_REST_S = 0.3
+SHORTEST_REST_S = 0.3  # of a leader, for a rest to count
 
 
 def smooth_motion(angles: Floats, row_s: float) -> Floats:

@@ -48,7 +48,7 @@ from greywhale.tune.search.objective import Objective
 from greywhale.tune.search.space import Space
 from greywhale.tune.search.training import TrainingMotion, abrupt_moves, own_motion, training_motions
 
-BUDGET = 2400
+BUDGET = 2400  # unless somebody asks for another
 METHOD = ShiftInvariantWolfWhale.name  # of the default method
 
 

@@ -29,7 +29,7 @@ from greywhale.tune.model_checks import Doubt, Identification
 from greywhale.tune.model_edits import UNSEALED, doubt_edits
 from greywhale.tune.travel import Travel, travel_of
 
-SAMPLES = 8
+SAMPLES = 8  # unless somebody asks for others
 MOST_SAMPLES = 1000  # every one is simulated for every controller that is tried
 
 

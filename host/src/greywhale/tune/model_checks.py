@@ -29,8 +29,8 @@ from greywhale.tune.limits import TUNING_LIMITS, ModelLimits, TrainingLimits, Tu
 from greywhale.tune.search.training import fit_motion, moves, reach
 
 SLOW, QUICK = "slow reaches", "quick moves"
-SPREAD_SAMPLES, ONE_BY_ONE_SAMPLES = 33, 9
-REACHES_SEED, REACHES_S, WAIT_TICKS = 2002, 6.0, 200
+SPREAD_SAMPLES, ONE_BY_ONE_SAMPLES = 33, 9  # more would only take longer
+REACHES_SEED, REACHES_S, WAIT_TICKS = 2002, 6.0, 200  # of the motions that are played
 CERTAIN = 1e-20  # a variance of next to nothing
 MATCH = "after `greywhale calibrate`, `greywhale arm match` writes the arm file anew"
 CONVERTER_SPAN = 4 * CONVERSIONS * (CONVERTER_COUNTS - 1)  # as the board counts a whole track

@@ -41,8 +41,8 @@ from greywhale.tune.search.space import Space
 from greywhale.tune.search.training import tick_times
 
 METHOD = "gwo-woa"
-AGENTS = 10
-ITERATIONS = 30
+AGENTS = 10  # the paper's
+ITERATIONS = 30  # the paper's
 # For each joint the first pack, and then as many moves as iterations.
 BUDGET = AGENTS * (ITERATIONS + 1)
 PERIOD_MS = 20

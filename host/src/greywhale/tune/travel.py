@@ -24,7 +24,7 @@ from greywhale.protocol.firmware import JOINTS
 from greywhale.protocol.table import ParameterTable
 from greywhale.tune.limits import TUNING_LIMITS, TravelLimits
 
-SAMPLES, SEED = 64, 0
+SAMPLES, SEED = 64, 0  # of the plants; more would only take longer
 GRAVITY = ("gravity_1", "gravity_12", "gravity_2")
 
 

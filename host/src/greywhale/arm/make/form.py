@@ -13,7 +13,7 @@ from greywhale.base.errors import BadUsage, cut
 from greywhale.base.formats import toml_file
 from greywhale.base.formats.kinds import Kind, refuse_other_kind
 
-LONGEST_ANSWER_LETTERS = 200
+LONGEST_ANSWER_LETTERS = 200  # so much of an answer is shown
 
 
 class AskedQuestion(TypedDict):

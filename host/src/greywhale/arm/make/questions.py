@@ -15,7 +15,7 @@ from greywhale.base.formats import units
 from greywhale.base.formats.units import Unit
 from greywhale.protocol.joints import ALL, Joints, listed, parse
 
-G_CM2_PER_KG_M2 = 1e7
+G_CM2_PER_KG_M2 = 1e7  # data sheets have the first, arm files the second
 SAME_MOTOR = "same_motor"
 JOINTS_IN_USE = "joints"
 MOTOR_KEYS = (

@@ -31,10 +31,10 @@ from greywhale.loop import plant_row
 from greywhale.optimise import DEFAULT, create
 from greywhale.protocol.table import ParameterTable
 
-BUDGET = 300
+BUDGET = 300  # unless somebody asks for another
 GOOD_BUDGET = 150  # finds a good motion; the last evaluations of a search for the best one would gain little
 MOST_BUDGET = 100_000  # takes a day
-SECONDS = 20.0
+SECONDS = 20.0  # unless somebody asks for another length
 # The quantities that count where an arm file does not say what is known: as in a usual identification.
 USUAL = (*MOTOR, "coulomb", "breakaway", "gap", "teeth")
 SHRINKS = 30  # of a motion that is not safe on some arm, one after the other

@@ -20,8 +20,8 @@ from greywhale.identify.limits import IDENTIFICATION_LIMITS, ExcitationLimits
 from greywhale.loop.leader_motions import minimum_jerk
 from greywhale.protocol.firmware import JOINTS, POINT_S
 
-SINES = 6
-SHORTEST_S, LONGEST_S = 4.0, 600.0
+SINES = 6  # of a joint
+SHORTEST_S, LONGEST_S = 4.0, 600.0  # that may be asked for
 
 
 @dataclass(frozen=True)

@@ -16,7 +16,7 @@ from greywhale.protocol.table import ParameterTable
 
 EVERY = 16  # ticks between rows of the traces
 ROW_S = EVERY / 1000
-STEPS_PER_TICK = 1
+STEPS_PER_TICK = 1  # of the plant
 # The arm stands at the first pose for so many ticks before the motion.
 STILL_TICKS = 304
 

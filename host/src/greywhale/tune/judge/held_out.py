@@ -26,7 +26,7 @@ from greywhale.tune.judge.floor import Floor, saturation_floor
 from greywhale.tune.limits import TUNING_LIMITS, TuningLimits
 from greywhale.tune.search.training import clip_motion, fit_motion, reach
 
-WAIT_S = 1.5
+WAIT_S = 1.5  # before a motion is judged
 SEED = 2001  # of reaches that are played nowhere else
 EVERY = 2  # ticks between the rows of the traces
 
