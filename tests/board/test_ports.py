@@ -92,12 +92,6 @@ def test_boards_are_known_by_their_usb_numbers(monkeypatch: pytest.MonkeyPatch) 
     assert "USB serial bridge" in found[3].description
 
 
-def test_the_only_likely_port_is_chosen(monkeypatch: pytest.MonkeyPatch) -> None:
-    plug(monkeypatch, usb("/dev/ttyS0", None, None), usb("/dev/ttyACM0", 0x2341, 0x0042))
-    assert ports.choose_port(None) == "/dev/ttyACM0"
-    assert ports.choose_port("/dev/mine") == "/dev/mine"
-
-
 def test_no_port_or_several_are_one_sentence(monkeypatch: pytest.MonkeyPatch) -> None:
     plug(monkeypatch, usb("/dev/ttyS0", None, None))
     with pytest.raises(UserError, match="no board was found.*greywhale sim.*--port") as caught:
@@ -113,6 +107,7 @@ def test_no_port_or_several_are_one_sentence(monkeypatch: pytest.MonkeyPatch) ->
     [
         ([BRIDGE], 0),  # a clone of a board: it does not name itself
         ([UNKNOWN], 0),
+        ([(None, None), MEGA], 1),
         ([MEGA, BRIDGE], 0),
         ([BRIDGE, MEGA, UNKNOWN], 1),
         ([UNKNOWN, BRIDGE], 1),
@@ -122,7 +117,7 @@ def test_no_port_or_several_are_one_sentence(monkeypatch: pytest.MonkeyPatch) ->
     ],
 )
 def test_the_likeliest_port_is_chosen(
-    devices: list[tuple[int, int]], chosen: int, monkeypatch: pytest.MonkeyPatch
+    devices: list[tuple[int | None, int | None]], chosen: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     plug(monkeypatch, *(usb(f"/dev/ttyUSB{place}", *device) for place, device in enumerate(devices)))
     assert ports.choose_port(None) == f"/dev/ttyUSB{chosen}"
