@@ -18,6 +18,7 @@ from greywhale.dashboard.outbox import Outbox
 from greywhale.dashboard.port_holder import PortHolder
 from greywhale.dashboard.relay import Relay
 from greywhale.protocol import schema
+from greywhale.protocol.declared import Message
 from greywhale.protocol.frames import encode_frame
 from tests.board.fake_board import FakeBoard
 from tests.dashboard.shared import Desk, Shared, Viewer, living
@@ -72,6 +73,23 @@ def test_a_verb_that_a_page_stopped_starts_no_motor_any_more(shared: Shared, who
         shared.live(0.3)
     assert not on(watcher)
     assert verb.answers() == []
+
+
+def test_the_firmware_starts_motors_for_nothing_else_that_is_asked(shared: Shared) -> None:
+    """So whatever a verb does between its motions, what the relay refuses after a stop is all that could start them."""
+    driver, watcher = driving(shared), shared.page()
+    starts: set[type[Message]] = set()
+    for request in (one for one in schema.MESSAGES if not one.TYPE & schema.REPLY_BIT):
+        for number in (0, 100):  # in its first field, such as a lease
+            payload = number.to_bytes(request.SIZE, "little") if request.SIZE else b""
+            seq = driver.ask(schema.StopRequest())
+            shared.live(0.05, here=driver)
+            watcher.raw()
+            shared.relay.receive(driver.client, encode_frame(request.TYPE, seq + 1, payload))
+            shared.live(0.1, here=driver)
+            if on(watcher):
+                starts.add(request)
+    assert starts == set(map(type, STARTS))
 
 
 def test_the_next_verb_that_a_person_starts_may_start_the_motors(shared: Shared) -> None:
