@@ -104,6 +104,23 @@ def test_the_next_verb_that_a_person_starts_may_start_the_motors(shared: Shared)
     assert second.ended == []
 
 
+@pytest.mark.parametrize("how", ["it ends", "its page lets go"])
+def test_motors_go_off_at_once_with_the_verb_that_started_them(shared: Shared, how: str) -> None:
+    driver, watcher = driving(shared), shared.page()
+    verb = verb_of(shared, driver)
+    verb.ask(STARTS[0])
+    shared.live(0.2)
+    assert on(watcher)
+    if how == "it ends":
+        shared.relay.leave(verb.client)
+    else:
+        shared.relay.release(driver.client)
+    shared.live(0.05)
+    watcher.raw()
+    shared.live(0.05)
+    assert not on(watcher)
+
+
 def test_a_verb_whose_motors_rest_and_that_nobody_stopped_goes_on(shared: Shared) -> None:
     driver = driving(shared)
     verb = verb_of(shared, driver)
