@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from greywhale.commission.arm_on_port import ArmOnPort
-from greywhale.commission.choose import JointTrials, confirm
+from greywhale.commission.choose import JointTrials, combine_best, confirm
 from greywhale.commission.trials import Trial, Trials
 from greywhale.loop.controllers import controllers_of
 from tests.commission.simulated import KI, KP, SimulatedRig
@@ -37,6 +37,42 @@ def test_the_joints_best_are_played_together_before_they_count(trials: Trials, r
     assert best is trials.done[3]
     assert best.passed
     assert np.array_equal(best.rows, stiffer(trials, [0, 1, 2], BETTER))
+
+
+class Shaken:
+    """In the place of a round's foresight: joints 0 and 1 swing where both are stiff."""
+
+    def __init__(self, stiff: np.ndarray) -> None:
+        self.stiff = stiff
+
+    def beyond_rest(self, sets: np.ndarray) -> np.ndarray:
+        both = (sets[:, :2] == self.stiff[:2]).all(axis=(1, 2))
+        return np.where(both[:, None], [0.01, 0.01, 0.0, 0.0], 0.0)
+
+    def clauses(self, rows: np.ndarray) -> tuple[str, ...]:
+        return tuple("swings" if swing else "" for swing in self.beyond_rest(rows[None])[0])
+
+
+@pytest.mark.parametrize("costs", [(0.2, 0.1), (0.1, 0.2)])
+def test_joints_of_different_trials_that_swing_together_are_not_combined(
+    trials: Trials, rig: SimulatedRig, costs: tuple[float, float]
+) -> None:
+    """Each passed beside the other's milder controller. The one that gains less by its stiffer one steps back."""
+    before = play_before(trials, rig)
+    mild, stiff = (stiffer(trials, [0, 1], factor) for factor in (1.5, BETTER))
+    joints = joints_of(trials)
+    for joint, stiff_score in enumerate(costs):
+        for rows, score in ((mild, 0.3), (stiff, stiff_score)):
+            joints[joint].add(rows[joint], replace(before.verdicts[joint], score=score, share=0.5))
+    assert np.array_equal(combine_best(trials, joints)[:2], stiff[:2]), "no model speaks against it"
+    trials.foresight = Shaken(stiff)  # type: ignore[assignment]
+    wanted = mild.copy()
+    kept = int(np.argmin(costs))
+    wanted[kept] = stiff[kept]
+    assert np.array_equal(combine_best(trials, joints), wanted)
+    best = chosen(trials, joints, rig)
+    assert np.array_equal(best.rows, wanted)
+    assert len(trials.done) == 2, "nothing else was played"
 
 
 @pytest.mark.slow

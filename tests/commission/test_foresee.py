@@ -7,14 +7,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from greywhale.commission.foresee import Foresight, foresee
+from greywhale.arm.plants import columns, plant_row
+from greywhale.commission.foresee import Foresight, foresee, worsen
 from greywhale.commission.limits import COMMISSIONING_LIMITS
 from greywhale.commission.trials import Trials
 from greywhale.files.arm import default_arm
 from greywhale.loop import multi_steps
 from greywhale.loop.controllers import controllers_of
 from greywhale.measure.swings import unrest
-from tests.commission.simulated import KI, KP, SimulatedRig
+from greywhale.tune.judge.margins import with_gain
+from tests.commission.simulated import KD, KI, KP, SimulatedRig
+from tests.support.arms import make_arm
 
 
 @pytest.fixture
@@ -40,6 +43,29 @@ def test_a_joint_that_would_follow_steps_worse_is_named_and_no_other(trials: Tri
     assert [bool(clause) for clause in clauses] == [False, True, False, False]
 
 
+def test_a_joint_that_would_swing_after_quick_moves_is_named(trials: Trials, foresight: Foresight) -> None:
+    """Joint 3 swings by more than anybody sees on a worse arm; a joint that swung so before is not blamed."""
+    foresight = replace(foresight, worse=with_gain(foresight.worse, 3.0))
+    rows = controllers_of(trials.table).copy()
+    rows[3, [KP, KD]] = 4 * rows[3, KP], rows[3, KD]
+    clauses = foresight.clauses(rows)
+    assert "may swing after quick moves" in clauses[3]
+    assert not any("swing" in clause for clause in clauses[:3])
+    (swings,) = foresight.beyond_rest(rows[None])
+    assert swings[3] > COMMISSIONING_LIMITS.swings.max_unrest_rad
+    before = replace(foresight, unrest=np.tile(1.01 * swings, (2, 1)))
+    assert not before.beyond_rest(rows[None]).any()
+
+
+def test_gaps_beside_play_are_wider_on_the_worse_arm_by_what_estimates_are_off() -> None:
+    play = [0.005, 0.0, 0.005, 0.0]
+    arm = make_arm(follower_pots={"joint": {joint: {"play": value} for joint, value in enumerate(play)}})
+    arm = make_arm(arm, joint_2={"gear": {"half_gap": 0.0, "stiffness": 0.0, "damping": 0.0}})
+    doubt = COMMISSIONING_LIMITS.tuning.identification.uncertainty.gap_beside_play_rad
+    wider = (worsen(arm, COMMISSIONING_LIMITS) - plant_row(arm))[columns("half_gap")]
+    np.testing.assert_allclose(wider, [doubt, 0.0, 0.0, 0.0], atol=1e-15)
+
+
 def test_a_joint_is_not_blamed_for_its_neighbours(trials: Trials, foresight: Foresight) -> None:
     """A quicker joint 1 disturbs joint 2, whose stiffer controller only makes up for a part of that."""
     rows = scaled(trials, 1, 4.0)
@@ -55,7 +81,7 @@ def test_a_joint_is_not_blamed_for_its_neighbours(trials: Trials, foresight: For
 def test_of_the_rests_between_steps_the_worst_counts(trials: Trials, foresight: Foresight) -> None:
     """The yaw swings from before, but not after every step."""
     rows = controllers_of(trials.table)[None]
-    _, restless = foresight.estimate(rows, foresight.plant)
+    _, restless = foresight.estimate(rows)
     (angles,) = foresight.experiment.run(rows, foresight.plant, every=1).angles
     assert restless[0, 0, 0] > 1.5 * unrest(foresight.experiment.leader, angles.astype(np.float64))[0] > 5e-4
 

@@ -21,7 +21,7 @@ from greywhale.base.study.side_job import SideJobs, side_jobs
 from greywhale.base.types import Controllers, Flags, Floats, NotedProgress, show_no_progress
 from greywhale.commission import learn, start
 from greywhale.commission.arm_on_port import ArmOnPort, connected
-from greywhale.commission.choose import JointTrials, Row, confirm
+from greywhale.commission.choose import JointTrials, Row, combine_best, confirm
 from greywhale.commission.evidence import Evidence, failing_plants, to_fit, to_validate
 from greywhale.commission.foresee import foresee
 from greywhale.commission.journal import AnewError, CommissioningJournal
@@ -207,7 +207,7 @@ class _Commissioning:
             self.nominal,
             fit,
             begin=self.rounds[-1].learnt.arm if self.rounds else None,
-            start=self._best_rows(),
+            start=combine_best(self.trials, self.joints) if self.joints else controllers_of(self.trials.table),
             failing=partial(failing_plants, trials=self.trials),
         )
 
@@ -289,7 +289,7 @@ class _Commissioning:
         """
         failed, poor, tried = _failed(trial), self._poor(learnt), self._have_tried(learnt.fallback)
         passed = np.array([verdict.passed for verdict in trial.verdicts])
-        begin = np.where(passed[:, None], self._best_rows(), trial.rows)
+        begin = np.where(passed[:, None], combine_best(self.trials, self.joints), trial.rows)
         restless = failed & np.array([len(one.restless) > 1 for one in self.joints])
         for joint in np.flatnonzero(restless).tolist():
             begin[joint] = self._calmer(joint, learnt)
@@ -316,13 +316,6 @@ class _Commissioning:
 
     def _have_tried(self, rows: Controllers) -> Flags:
         return np.array([one.has_tried(row) for one, row in zip(self.joints, rows, strict=True)])
-
-    def _best_rows(self) -> Controllers:
-        """Every joint's best so far, of whatever trial."""
-        rows = controllers_of(self.trials.table).copy()
-        for joint, one in enumerate(self.joints):
-            rows[joint] = one.best.row
-        return rows
 
     def _needs_another_round(self) -> bool:
         """True where another round may help: a joint follows little better than before, or poorly."""

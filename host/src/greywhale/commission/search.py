@@ -23,12 +23,12 @@ import numpy as np
 
 from greywhale.arm import ArmParameters
 from greywhale.arm.parameters import with_usual_noise
-from greywhale.arm.plants import columns, plant_row
+from greywhale.arm.plants import plant_row
 from greywhale.base.types import Controllers, Flags, Floats, NotedProgress
 from greywhale.commission.evidence import failing_plants
 from greywhale.commission.foresee import Foresight
 from greywhale.commission.judge import LED, RESTLESS, Limits
-from greywhale.commission.limits import CommissioningLimits, SearchLimits
+from greywhale.commission.limits import SearchLimits
 from greywhale.commission.measures import Measures, measure
 from greywhale.commission.trials import Trial, Trials
 from greywhale.fuzzy.settings import GAIN_UNIT
@@ -39,7 +39,7 @@ from greywhale.protocol.firmware import JOINTS
 from greywhale.protocol.joints import unused
 from greywhale.protocol.table import CONTROLLER_COLUMNS
 from greywhale.tune.default import METHOD
-from greywhale.tune.judge.margins import TEETH, TWICE, Margins, penalty, with_gain
+from greywhale.tune.judge.margins import TEETH, TWICE, Margins, penalty
 from greywhale.tune.model import Model
 from greywhale.tune.search.lockstep import TURNS, LockstepSearch, SearchState
 from greywhale.tune.search.space import Space
@@ -57,9 +57,8 @@ class CheckOnModel:
 
     model: ArmParameters
     arm: LedModel
-    plants: Floats  # (2, columns): the model, and a worse arm
     trials: Trials
-    foresight: Foresight
+    foresight: Foresight  # it knows the model's plant and a worse one
     margins_on: Callable[[Floats], Margins]  # of plants (n, columns)
     margins: Margins  # on the model and looser gears
     limits: Limits  # of the arm
@@ -79,16 +78,14 @@ class CheckOnModel:
         judging = trials.judging.tuning
         margins_on = partial(Margins, arm, table, threads=threads, searching=True, seed=seed, judging=judging)
         margins = margins_on(plants)
-        plants = np.vstack([plants[:1], worsen(plants[1:], trials.judging)])
         led = LedModel(arm, table, before.traces)
-        (traces,) = led.run(running, plants[:1])
+        (traces,) = led.run(running, foresight.plant)
         known = measure(traces, trials.check, table.supply_v)
         quiet_v = trials.judging.swings.bounds.quiet_share * table.supply_v
         limits, own = (Limits.of(one, NONE, quiet_v, trials.judging) for one in (before.measured, known))
         return cls(
             model=arm,
             arm=led,
-            plants=plants,
             trials=trials,
             foresight=foresight,
             margins_on=margins_on,
@@ -102,7 +99,7 @@ class CheckOnModel:
                 error=wanted.error_aim * own.error,
             ),
             led=known.error[LED].sum(axis=0),
-            swings=np.maximum(foresight.estimate(running, plants[1:])[1][:, 0], wanted.still_rad),
+            swings=np.maximum(foresight.unrest, wanted.still_rad),
             overshoot=np.fmax(known.worst("overshoot"), wanted.max_overshoot),
         )
 
@@ -114,7 +111,7 @@ class CheckOnModel:
         """Return the check with lower aims: the model may show less of what a trial had too much of, by that ratio. All
         plants that hunt as the arm did so far join it, and no joint that hunted may have a higher gain than then.
         """
-        (known,) = self._measured(trial.rows[None], self.plants[0])
+        (known,) = self._measured(trial.rows[None], self.foresight.plant[0])
         aims: dict[str, Floats] = {}
         surer, least = self.wanted.correction_share, self.wanted.least_aim
         for name in (*RESTLESS, "error"):
@@ -134,7 +131,7 @@ class CheckOnModel:
 
     def scores(self, controllers: Controllers) -> Floats:
         """(n, 4): the error that the model shows in what a hand leads, as a share of that before."""
-        shown = [one.error[LED].sum(axis=0) for one in self._measured(controllers, self.plants[0])]
+        shown = [one.error[LED].sum(axis=0) for one in self._measured(controllers, self.foresight.plant[0])]
         return np.array(shown) / np.maximum(self.led, LEAST_RAD2)
 
     def costs(self, controllers: Controllers) -> Floats:
@@ -147,12 +144,12 @@ class CheckOnModel:
         prices, wanted = self._price_margins(self.margins, controllers, (TWICE, TEETH)), self.wanted
         if self.failing is not None:
             prices += self._price_margins(self.failing, controllers, (TWICE,))
-        ratios, restless = self.foresight.estimate(controllers, self.plants[1:])
+        ratios, restless = self.foresight.estimate(controllers)
         prices += wanted.price * np.maximum(restless / self.swings[:, None] - 1.0, 0.0).max(axis=0)
         worse = np.maximum(ratios / wanted.before_aim - 1.0, 0.0)
         prices += wanted.steps_price * np.where(self.foresight.believed, worse, 0.0)
         errors = np.empty_like(prices)
-        for row, one in enumerate(self._measured(controllers, self.plants[0])):
+        for row, one in enumerate(self._measured(controllers, self.foresight.plant[0])):
             errors[row] = np.sqrt(one.error[LED].sum(axis=0) / np.maximum(self.led, LEAST_RAD2))
             prices[row] += wanted.price * self._beyond(one, (*RESTLESS, "error"))
             overshoot = np.nan_to_num(one.worst("overshoot"))
@@ -164,7 +161,8 @@ class CheckOnModel:
 
     def _unsteady(self) -> Floats:
         """Plants (n, columns) on which a joint comes to rest less easily."""
-        return self.plants[1:] if self.failing is None else np.vstack([self.plants[1:], self.failing.plants])
+        worse = self.foresight.worse
+        return worse if self.failing is None else np.vstack([worse, self.failing.plants])
 
     def _price_margins(self, margins: Margins, controllers: Controllers, left_out: Sequence[str]) -> Floats:
         near = {name: found for name, found in margins.unrest(controllers).items() if name not in left_out}
@@ -248,16 +246,3 @@ def _with_sets_of(before: Controllers, tuned: Controllers, least_ki: float) -> C
     rows[:, [KU, CE_TICKS]] = tuned[:, [KU, CE_TICKS]]
     rows[:, KI] = np.maximum(rows[:, KI], least_ki * GAIN_UNIT)
     return rows
-
-
-def worsen(plant: Floats, judging: CommissioningLimits) -> Floats:
-    """Return arms (n, columns) on which a controller comes to rest less easily. Gaps beside play are wider by what
-    estimates are off on foreign arms: at the edge of a limit cycle a set passes the check, and hunts after the next
-    quick move.
-    """
-    worse = with_gain(plant, judging.search.worse_gain)
-    worse[:, columns("pot_lag")] += judging.search.worse_lag_s
-    wider = judging.tuning.identification.uncertainty.gap_beside_play_rad
-    beside = (worse[:, columns("stiffness")] > 0.0) & (worse[:, columns("pot_play")] > 0.0)
-    worse[:, columns("half_gap")] += np.where(beside, wider, 0.0)
-    return worse

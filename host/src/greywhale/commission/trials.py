@@ -9,7 +9,7 @@ from typing import Annotated, TypedDict
 
 import numpy as np
 
-from greywhale.base.types import Controllers, PerJoint
+from greywhale.base.types import Controllers, Flags, PerJoint
 from greywhale.commission.arm_on_port import ArmOnPort, PlayedMotion
 from greywhale.commission.foresee import Foresight
 from greywhale.commission.journal import AnewError, CommissioningJournal
@@ -190,9 +190,18 @@ class Trials:
             self.journal.note(name, {"controllers": rows.tolist(), "stopped": played.stopped, "joint": played.joint})
         return path, played
 
+    def come_to_rest(self, sets: Controllers) -> Flags:
+        """(n,) of sets (n, 4, 13): whether all joints come to rest after quick moves, by the round's model if any."""
+        if self.foresight is None:
+            return np.ones(len(sets), dtype=bool)
+        found: Flags = (self.foresight.beyond_rest(sets) == 0.0).all(axis=1)
+        return found
+
     def ranked(self) -> list[Trial]:
-        """Sets of controllers that can be borne as a whole, the best first; those from before always can."""
-        whole = [one for one in self.done[1:] if one.passes_at_a_price]
+        """Sets of controllers that can be borne as a whole and come to rest, the best first; those from before always
+        count.
+        """
+        whole = [one for one in self.done[1:] if one.passes_at_a_price and self.come_to_rest(one.rows[None])[0]]
         return sorted([*whole, self.before], key=lambda one: one.ranking_cost)
 
     def _next_name(self) -> str:
