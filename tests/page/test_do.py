@@ -15,7 +15,7 @@ from greywhale.base.telling import Telling
 from greywhale.commission.measures import NAMES, Measures
 from greywhale.commission.motions import PARTS
 from greywhale.dashboard.client import Client
-from greywhale.dashboard.job import Facts
+from greywhale.dashboard.job import Facts, ProgressFacts
 from greywhale.dashboard.jobs import Listed
 from greywhale.files.arm import load_arm
 from greywhale.files.log import read_log
@@ -253,7 +253,12 @@ def test_a_commissioning_shows_what_was_predicted_beside_what_was_measured(
     ]
     facts = facts_of("commission")
     note = "trial-1: error 6.1 mrad rms predicted, 7.2 measured"
-    progress = {"done": 0.5, "total": 1.0, "text": "round 1, trial 2 of 6 at most: recording", "note": note}
+    progress: ProgressFacts = {
+        "done": 0.5,
+        "total": 1.0,
+        "text": "round 1, trial 2 of 6 at most: recording",
+        "note": note,
+    }
     tell({**facts, "progress": progress})
     expect(desk.get_by_text(f"{progress['text']} ({note})")).to_be_visible()
     tell({**facts, "state": "done", "result": {"improved": True, "trials": trials}, "exit_code": 0})

@@ -83,7 +83,7 @@ def schema_of(kind: Any) -> dict[str, Any]:
 
 
 def _object_of(kind: Any) -> dict[str, Any]:
-    keys, notes = typing.get_type_hints(kind, include_extras=True), _notes(kind)
+    keys, notes = typing.get_type_hints(kind, include_extras=True), notes_of(kind)
     return {
         "type": "object",
         "properties": {
@@ -94,14 +94,14 @@ def _object_of(kind: Any) -> dict[str, Any]:
     }
 
 
-def _notes(kind: Any) -> dict[str, str]:
+def notes_of(kind: Any) -> dict[str, str]:
     """The comments behind the keys of a class, and of those that it extends."""
     source = inspect.getsource(kind)
     found: dict[str, str] = {}
     for bases in CLASS.findall(source):
         for base in bases.split(", "):
             if base != "TypedDict":
-                found |= _notes(getattr(sys.modules[kind.__module__], base))
+                found |= notes_of(getattr(sys.modules[kind.__module__], base))
     return found | dict(KEY.findall(source))
 
 

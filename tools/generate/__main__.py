@@ -8,10 +8,10 @@ from __future__ import annotations
 import argparse
 import sys
 
-from tools.generate import files, flash, joint_pictures, limits
+from tools.generate import files, flash, host_types, joint_pictures, limits
 from tools.generate.link.__main__ import main as generate_link
 
-GENERATORS = (generate_link, files.main, flash.main, limits.main, joint_pictures.main)
+GENERATORS = (generate_link, files.main, flash.main, host_types.main, limits.main, joint_pictures.main)
 
 
 def main(arguments: list[str]) -> int:

@@ -11,7 +11,8 @@ const LSB = TABLE.named("joint0.kp").lsb;
 const edited = Array.from({ length: 4 }, () => SETTING_NAMES.map(() => 7));
 const model = { name: "model.toml", identified: true, says: "" };
 const first: Job = {
-  id: "a", verb: "tune", arguments: {}, state: "running", progress: null, countdown: 0, telling: null, result: null, error: null, said: [],
+  kind: "job", id: "a", verb: "tune", arguments: {}, state: "running", progress: null, countdown: 0, telling: null, result: null, error: null,
+  exit_code: null, said: [],
 };
 const evaluation = (size: number): object => ({ joints: [1, 2, 3, 4].map((joint) => ({ mse_rad2: joint * size })) });
 const RESULT = {

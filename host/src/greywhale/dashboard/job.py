@@ -18,10 +18,11 @@ import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Literal, TypedDict
+from typing import Annotated, Any, Literal, TypedDict
 
 from greywhale.base import processes
 from greywhale.base.errors import INTERRUPTED, printable
+from greywhale.base.telling import Telling
 from greywhale.board.refusal import upper_first
 from greywhale.dashboard.client import Client
 from greywhale.dashboard.lending import LentEnd
@@ -48,6 +49,13 @@ class Taken:
     give_back: Callable[[], None]
 
 
+class ProgressFacts(TypedDict):
+    text: str  # the step that is done now
+    done: float
+    total: float
+    note: str  # such as the best cost so far; "" for none
+
+
 class Facts(TypedDict):
     """The facts of a job that pages get, again and again."""
 
@@ -56,9 +64,9 @@ class Facts(TypedDict):
     verb: str
     arguments: dict[str, Any]
     state: Literal["running", "done", "failed", "stopped"]
-    progress: dict[str, Any] | None  # done, total, text, note
+    progress: ProgressFacts | None
     countdown: int  # seconds until the arm moves; 0: it is not counted
-    telling: dict[str, Any] | None  # the result for people, as `base.telling` has it
+    telling: Annotated[dict[str, Any], Telling] | None  # the result for people, as `base.telling` has it
     result: Any  # what the verb prints with --json
     error: str | None  # one sentence
     exit_code: int | None

@@ -1,25 +1,9 @@
 // The services of a host beside the board: files, predictions, verbs, a bench. Without one views hide what needs it.
 
 import type { NamedText } from "../parts/named_text";
-import type { Telling } from "./telling";
+import type { ArmDescription, Heading, HostState, Job, KeptFile, OutsideTorque, Prediction, Verb } from "./host_types";
 
-export type NamedFile = { readonly name: string; readonly kind: string; readonly size_bytes: number; /** since 1970 */ readonly changed_s: number };
-
-export type HostState = {
-  readonly greywhale: string;
-  readonly arm: string;
-  /** True if the arm is a model that was identified. */
-  readonly identified: boolean;
-  readonly folder: string;
-  readonly sim: boolean;
-  /** True if a simulated arm may follow as soon as a page is open. */
-  readonly follows: boolean;
-  readonly files: readonly NamedFile[];
-  readonly controllers: readonly string[];
-  readonly arms: readonly string[];
-  /** The most that a file may have which a page brings. */
-  readonly most_upload_bytes: number;
-};
+export type * from "./host_types";
 
 /** The files of the host's folder that verbs take or write. A name that is taken is refused, replaced, or gets a number. */
 export interface Files {
@@ -30,32 +14,8 @@ export interface Files {
   remove(name: string): Promise<void>;
 }
 
-/** A question about an arm, and what was answered: "" holds what is usual. */
-export type Question = {
-  readonly where: string;
-  readonly text: string;
-  readonly unit: string;
-  readonly choices: readonly string[];
-  /** True where a number will do. */
-  readonly number: boolean;
-  readonly usual: string;
-  readonly given: string;
-  readonly problem: string;
-  readonly help: string;
-};
-export type Heading = { readonly heading: string; readonly questions: readonly Question[] };
 /** Answers by the questions' names; or a file of the folder that has some. */
 export type ArmAnswers = string | { readonly [where: string]: string };
-
-/** A motion and how a model follows it: rows of four joints, rad. */
-export type Predicted = {
-  readonly time_s: readonly number[];
-  readonly leader: readonly (readonly number[])[];
-  readonly follower: readonly (readonly number[])[];
-  readonly mse: readonly number[]; // of each joint, over the whole motion
-};
-
-export type Prediction = { readonly step: Predicted; readonly reach: Predicted };
 
 /** An arm that can be predicted and tuned for; `says` tells a person what it is, in a sentence. */
 export type Model = { readonly name: string; readonly identified: boolean; readonly says: string };
@@ -70,33 +30,10 @@ export interface Predictor {
   predict(raw: readonly number[], board: number, model: Model): Promise<Prediction>;
 }
 
-/**
- * The torque that acts on a joint from outside, N m, with half its 90 % interval. `why` says that it cannot be told, "" where
- * it can; `share` is that of the motor's stall torque, without its sign.
- */
-export type JointTorque = {
-  readonly torque_nm: number; readonly half_width_nm: number; readonly why: string; readonly contact: boolean; readonly share: number;
-};
-
-/** Something that touched a joint, seen at a tick of the board's; `torque_nm` is the largest so far. */
-export type ContactNow = {
-  readonly joint: number; readonly tick: number; readonly torque_nm: number; readonly lasted_s: number; readonly lasts: boolean;
-};
-
-/** The torques of a moment, and the last contact to begin. */
-export type OutsideTorque = { readonly joints: readonly JointTorque[]; readonly contact: ContactNow | null };
-
 export interface Torques {
   /** Listens to what a model tells of the board's samples, by the board's filter_shift, until the result is called. */
   listen(model: string, filterShift: number, heard: (told: OutsideTorque) => void, refused: (sentence: string) => void): () => void;
 }
-
-export type ArmDescription = {
-  readonly name: string;
-  /** Of the links from the base to the tip, m. */
-  readonly lengths: readonly number[];
-  readonly joints: readonly { readonly min: number; readonly max: number; readonly fixed: boolean }[];
-};
 
 export type Range = { readonly minimum: number; readonly maximum: number; readonly value: number; readonly step?: number };
 
@@ -147,57 +84,6 @@ export interface Bench {
   hands(wish: HandsWish): Promise<number>;
 }
 
-export type Argument = {
-  readonly name: string;
-  /** Its word on the command line, "" where its place alone tells. */
-  readonly option: string;
-  readonly label: string;
-  readonly unit: string;
-  /** True if it matters first. */
-  readonly first: boolean;
-  readonly kind: "flag" | "number" | "choice" | "file" | "text" | "answers";
-  /** The shape of a text, such as J:MIN:MAX; "" for any. */
-  readonly shape: string;
-  /** The kinds of files that it takes; none where it names a new one. */
-  readonly files: readonly string[];
-  readonly least: number | null;
-  readonly most: number | null;
-  readonly choices: readonly string[];
-  readonly default: unknown;
-  readonly required: boolean;
-  readonly many: boolean;
-  readonly help: string;
-};
-
-export type Verb = {
-  readonly verb: string;
-  /** As a person would ask for it. */
-  readonly title: string;
-  readonly group: string;
-  readonly help: string;
-  /** How it uses a board. Taken: it has the port itself, with or without a board at it. */
-  readonly board: "none" | "lent" | "taken";
-  readonly arguments: readonly Argument[];
-};
-
-/** The JSON that a verb may answer with. */
-export type Json = null | boolean | number | string | readonly Json[] | { readonly [key: string]: Json };
-
-export type Job = {
-  readonly id: string;
-  readonly verb: string;
-  readonly arguments: Readonly<Record<string, unknown>>;
-  readonly state: "running" | "done" | "failed" | "stopped";
-  readonly progress: { readonly done: number; readonly total: number; readonly text: string; readonly note: string } | null;
-  /** Seconds until the arm moves; 0: it is not counted. */
-  readonly countdown: number;
-  /** The result for people; null where there is none. */
-  readonly telling: Telling | null;
-  readonly result: Json;
-  readonly error: string | null;
-  readonly said: readonly string[];
-};
-
 export interface Jobs {
   verbs(): Promise<readonly Verb[]>;
   /** Starts a verb; the id of its job. */
@@ -241,14 +127,8 @@ export interface Tuner {
   stop(): void;
 }
 
-/** A calibration that a board has had. `changed` says in words what it changed against the one before. */
-export type KeptCalibration = {
-  readonly number: number;
-  readonly when: string; // ISO 8601
-  readonly why: string; // "found", "page", "back", or a verb
-  readonly changed: readonly string[];
-  readonly values: Readonly<Record<string, number>>; // raw, by parameter; none where its file is damaged
-};
+/** A calibration that a board has had; none of its values is there where its file is damaged. */
+export type KeptCalibration = Omit<KeptFile, "file" | "problem">;
 
 /** The calibrations of the board that is connected; none is ever written over. */
 export interface Calibrations {

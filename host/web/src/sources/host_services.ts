@@ -75,7 +75,7 @@ export class HostServices implements Services {
   constructor(private readonly token: string, private readonly page: () => string) {}
 
   private hear(): void {
-    this.open("/host", (job: Job & { readonly kind: "job" | "gone" }) => {
+    this.open("/host", (job: Job) => {
       for (const { heard, gone } of this.listeners) job.kind === "gone" ? gone(job.id) : heard(job);
     }, () => this.hear());
   }

@@ -2,7 +2,7 @@
 
 import { button, el, setText } from "../../parts/dom";
 import type { Job, Jobs, Json } from "../../session/services";
-import type { Telling } from "../../session/telling";
+import type { Telling } from "../../session/host_types";
 import type { ReadLog } from "./motions_picture";
 import { predictedBeside, trialsIn } from "./predicted";
 import { SearchCurve } from "./search_curve";

@@ -4,7 +4,7 @@ import { curvesPicture, type Curve } from "../../parts/curves";
 import { el } from "../../parts/dom";
 import { sentenceOf } from "../../parts/sentence";
 import { JOINTS, JOINT_NAMES, samplesIn, TICKS_A_SECOND, type Quantity, type Samples } from "../../session/samples";
-import type { Motions } from "../../session/telling";
+import type { Motions } from "../../session/host_types";
 
 /** The samples of a log, as `Services.log` gives them. */
 export type ReadLog = (file: string) => Promise<Uint8Array>;

@@ -1,7 +1,7 @@
 // A verb's result for people: the sentences and tables that a terminal prints, with pictures and buttons for what comes next.
 
 import { button, el } from "../../parts/dom";
-import type { Column, Row, Sentences, Step, Table, Telling } from "../../session/telling";
+import type { Column, Row, Sentences, Step, Table, Telling } from "../../session/host_types";
 import { motionsPicture, type ReadLog } from "./motions_picture";
 
 /** Opens a verb's form with values filled in. */
