@@ -43,7 +43,7 @@ def any_settings(chance: np.random.Generator) -> JointSettings:
         raw[name] = int(chance.integers(of.minimum, of.maximum + 1))
         if name in SETS:
             side = -1 if name in LEFT else 1
-            raw[name] = int(chance.choice([side * abs(raw[name]), side * 100, -side * 900, 2 * SET_UNIT], p=ODDS))
+            raw[name] = int(chance.choice([side * abs(raw[name]), side * 100, -side * 900, 2 * SET_UNIT - 1], p=ODDS))
     return JointSettings(**raw)
 
 

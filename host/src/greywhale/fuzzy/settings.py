@@ -1,4 +1,4 @@
-"""One joint's controller as the board stores it, and why a board would refuse one: the host checks first."""
+"""One joint's controller as the board stores it, and why a board would refuse one."""
 
 from __future__ import annotations
 
@@ -21,7 +21,6 @@ LARGEST_K = 64 * GAIN_UNIT
 LARGEST_KI = 1000 * GAIN_UNIT
 LARGEST_KI_PERIOD = 1 << 28
 LARGEST_KU_MV = 30_000
-LONGEST_PERIOD_MS = 50
 KD_SPAN_MS = 20
 MOST_CE_TICKS = 20
 
@@ -66,27 +65,8 @@ class JointSettings:
         return _native.FuzzyController(self.native(), period_ms)
 
     def refusal(self, period_ms: int) -> Refusal:
-        """The reason why a board would refuse these settings, by the firmware's checks in compile(), in their order."""
-        if not 1 <= period_ms <= LONGEST_PERIOD_MS:
-            return Refusal.PERIOD
-        if not 1 <= self.ce_ticks <= MOST_CE_TICKS:
-            return Refusal.RANGE
-        left = (self.ne_c, self.ze_a, self.nce_c, self.zce_a)
-        right = (self.pe_b, self.ze_c, self.pce_b, self.zce_c)
-        for outward in (size for pair in zip((-value for value in left), right, strict=True) for size in pair):
-            if abs(outward) > SET_UNIT:
-                return Refusal.RANGE
-            if outward < 0:
-                return Refusal.ORDER
-            if outward < LEAST_WIDTH:
-                return Refusal.WIDTH
-        return self._gain_refusal(period_ms)
-
-    def _gain_refusal(self, period_ms: int) -> Refusal:
-        limits = ((self.kp, LARGEST_K), (self.kd, LARGEST_K), (self.ki, LARGEST_KI), (self.ku_mv, LARGEST_KU_MV))
-        if any(value > limit for value, limit in limits) or self.ki * period_ms >= LARGEST_KI_PERIOD:
-            return Refusal.GAIN
-        return Refusal.NONE
+        """The reason why a board would refuse these settings: compile() of the firmware says it."""
+        return Refusal(_native.fuzzy_refusal(self.native(), period_ms))
 
     def as_tuple(self) -> tuple[int, ...]:
         """The values in the firmware's order."""
