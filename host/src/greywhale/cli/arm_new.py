@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import itertools
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -16,7 +15,7 @@ from greywhale.arm.make.explain import explain
 from greywhale.arm.make.questions import Answers, Question, collect
 from greywhale.arm.parameters import ArmParameters
 from greywhale.base.errors import UserError, counted
-from greywhale.base.formats.whole import refuse_inputs, write_text
+from greywhale.base.formats.whole import free_name, refuse_inputs, write_text
 from greywhale.base.telling import Sentences, Step, Telling
 from greywhale.cli.arm_table import Lifting, lifting, notes, table
 from greywhale.cli.output import FILE, json_option, option, overwrite_option, show, tell
@@ -105,7 +104,7 @@ class Person:
             yield
         except (UserError, KeyboardInterrupt) as error:
             if self._given:
-                path = _free_name(self._out)
+                path = free_name(self._out.with_name(f"{self._out.stem}.answers.toml"))
                 write_text(path, answers_toml(self._given))
                 error.add_note(
                     f"Your {counted(len(self._given), 'answer')} are in {path}: `greywhale arm new --answers {path}` "
@@ -149,13 +148,6 @@ class Person:
         if line.strip().lower() == "back":
             raise Back
         return line.strip()
-
-
-def _free_name(out: Path) -> Path:
-    """arm.answers.toml beside arm.toml, or the next name that is free."""
-    ends = itertools.chain([""], (f"-{number}" for number in itertools.count(2)))
-    names = (out.with_name(f"{out.stem}.answers{end}.toml") for end in ends)
-    return next(path for path in names if not path.exists())
 
 
 def _asked(question: Question) -> str:

@@ -14,7 +14,7 @@ from typing import IO, Literal, TypedDict
 
 from greywhale.base.errors import BadUsage, UserError, cut, os_reason
 from greywhale.base.formats.draft import sync_folder
-from greywhale.base.formats.whole import write_whole
+from greywhale.base.formats.whole import free_name, write_whole
 from greywhale.dashboard.file_kinds import KINDS_IN_WORDS, KNOWN_ENDS, kind_of_content, kind_of_file
 from greywhale.dashboard.limits import REQUESTS
 
@@ -119,7 +119,7 @@ class Folder:
         content.seek(0)
         with self._changing:
             if if_there == "rename":
-                target = _free(target)
+                target = free_name(target)
             elif os.path.lexists(target):
                 if if_there == "refuse":
                     raise BadUsage(f"{cut(name)}: exists already; replace it, or choose another name.")
@@ -129,7 +129,7 @@ class Folder:
 
     def new_name(self, name: str) -> str:
         """This name, or the next that is free: name-2, name-3, ..."""
-        return str(_free(self._new(name)).relative_to(self.path))
+        return str(free_name(self._new(name)).relative_to(self.path))
 
     def _new(self, name: str) -> Path:
         """The path of a file that may be there or not, in a folder that is there."""
@@ -152,14 +152,6 @@ class Folder:
 def spool() -> IO[bytes]:
     """A file without a name for what comes in pieces; it is gone when it is closed."""
     return tempfile.TemporaryFile()
-
-
-def _free(path: Path) -> Path:
-    number, free = 1, path
-    while os.path.lexists(free):
-        number += 1
-        free = path.with_name(f"{path.stem}-{number}{path.suffix}")
-    return free
 
 
 @contextlib.contextmanager

@@ -32,6 +32,15 @@ def refuse_inputs(out: Path | None, *inputs: str | Path | None) -> None:
             raise BadUsage(f"{out}: this file is read from; write elsewhere.")
 
 
+def free_name(path: Path) -> Path:
+    """This path, or the next that is free: name-2, name-3, ... A link that leads nowhere takes its name too."""
+    number, free = 1, path
+    while os.path.lexists(free):
+        number += 1
+        free = path.with_name(f"{path.stem}-{number}{path.suffix}")
+    return free
+
+
 def require_writable(path: Path) -> None:
     """OSError where `path` could not be written: no folder, no room, no permission, or not a file."""
     Draft(path).discard()
