@@ -15,6 +15,7 @@ from typing import Any
 import click
 
 from greywhale.cli.form_words import GROUPS, FormWords, words_of
+from greywhale.cli.group import command_of
 from greywhale.cli.verbs import greywhale
 from greywhale.dashboard.verbs import ArgumentFacts, BoardUse, VerbFacts
 
@@ -37,7 +38,7 @@ def catalogue() -> list[VerbFacts]:
 
 
 def _facts(group: str, verb: str, words: FormWords) -> VerbFacts:
-    command = command_of(verb)
+    command = command_of(greywhale, verb)
     hidden = _SERVERS | _NOT_HERE.get(verb, set())
     shown = [one for one in command.params if one.name not in hidden]
     places = {name: place for place, name in enumerate(words.first)}
@@ -51,17 +52,6 @@ def _facts(group: str, verb: str, words: FormWords) -> VerbFacts:
         "board": _board_use(verb, command),
         "arguments": [_argument(verb, one, labels, one.name in places) for one in shown],
     }
-
-
-def command_of(verb: str) -> click.Command:
-    """The command of a verb of one word or two."""
-    command: click.Command = greywhale
-    for word in verb.split():
-        assert isinstance(command, click.Group)
-        found = command.get_command(click.Context(command), word)
-        assert found is not None
-        command = found
-    return command
 
 
 def _board_use(verb: str, command: click.Command) -> BoardUse:

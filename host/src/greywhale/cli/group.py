@@ -8,6 +8,16 @@ from greywhale.base.errors import cut
 from greywhale.files.names import did_you_mean
 
 
+def command_of(root: click.Command, verb: str) -> click.Command:
+    """The command of a verb of one word or two, below that of the program."""
+    command = root
+    for word in verb.split():
+        found = command.get_command(click.Context(command), word) if isinstance(command, click.Group) else None
+        assert found is not None, verb
+        command = found
+    return command
+
+
 class Group(click.Group):
     """Whoever gives no verb wants to see what there is: help on stdout and exit code 0."""
 

@@ -18,6 +18,7 @@ from greywhale.base.errors import MOST_WORKERS, printable, require_between
 from greywhale.base.telling import Step, Telling, told
 from greywhale.base.types import NotedProgress, show_no_progress
 from greywhale.cli import completion, tracing
+from greywhale.cli.group import command_of
 from greywhale.cli.wrapping import fit
 
 ANSWER = "answer"  # attribute of a verb's function: the type of what it prints with --json
@@ -102,17 +103,13 @@ def show(as_json: bool, result: Mapping[str, object], telling: Telling | str) ->
         click.echo(json_of(result))
     else:
         # A pipe gets the result alone.
-        steps = [(f"Next: {command_of(step)}", 0) for step in telling.steps] if sys.stdout.isatty() else []
+        steps = [(f"Next: {_typed(step)}", 0) for step in telling.steps] if sys.stdout.isatty() else []
         click.echo("\n".join(fit(printable(line), sys.stdout, hang) for line, hang in [*telling.lines(), *steps]))
 
 
-def command_of(step: Step) -> str:
+def _typed(step: Step) -> str:
     """The step as one types it."""
-    command: click.Command = click.get_current_context().find_root().command
-    for word in step.verb.split():
-        found = command.get_command(click.Context(command), word) if isinstance(command, click.Group) else None
-        assert found is not None, step.verb
-        command = found
+    command = command_of(click.get_current_context().find_root().command, step.verb)
     options: list[str] = []
     places: list[str] = []
     for parameter in command.params:
