@@ -9,41 +9,61 @@ import { button, el, select } from "../parts/dom";
 import { sentenceOf } from "../parts/sentence";
 import { browserStore } from "../parts/storage";
 import { startTheme } from "../parts/theme";
-import type { NamedText } from "../parts/named_text";
 import { Session } from "../session/session";
 import type { Shell } from "../views/shell";
 import { PageBoard } from "../sources/in_page/board";
 import type { BenchData } from "../sources/in_page/messages";
 import { PagePredictor } from "../sources/in_page/predictor";
-import { PageTuner, type TunerParts } from "../sources/in_page/tuner";
+import { PageTuner } from "../sources/in_page/tuner";
 import { SerialBoard } from "../sources/serial/board";
+import type { TunerData } from "../tuner/data";
 import { Views } from "./views";
 import { whenDisabled } from "./when_disabled";
 
-/** The parts that the page is made of. */
-export type Parts = {
-  readonly code: ArrayBuffer;
-  readonly data: BenchData;
-  readonly worker: Worker;
-  readonly tuner: () => Promise<TunerParts>; // a new worker each time
-  /** The rules of a calibration. */
-  readonly calibration: () => Promise<ArrayBuffer>;
-  /** The HEX file of a board, mega or nano. */
-  readonly firmware: (board: string) => Promise<NamedText>;
+/** The files of which the page is made. */
+type Folder = {
+  readonly file: (name: string) => Promise<Response>;
+  readonly worker: (name: "bench" | "tuner") => Worker; // a new one each time
   /** The folder of the documentation, where one lies beside the page. */
   readonly docs: string | null;
 };
+type Module<Data> = { readonly code: ArrayBuffer; readonly data: Data; readonly worker: Worker };
+type Parts = ReturnType<typeof partsOf> & Module<BenchData>;
 
 const THE_BENCHS = "This is the arm as the page begins with it: what was broken, loaded or changed on the bench is not in it.";
 const NOT_YOURS = "This is greywhale's default arm, not yours. greywhale identify makes a model.toml of your own from a recording: give it here.";
 
-/** Shows the page, or why its parts are not there. */
-export function openPage(parts: Promise<Parts>): void {
+/** Shows the page, or why its parts are not there; ends when they are. */
+export async function openPage(folder: Folder): Promise<void> {
   startTheme();
   addEventListener("hashchange", () => location.reload());
-  parts.then(atPort() ? showPort : showBench).catch((error: unknown) => {
+  const bench = moduleOf<BenchData>(folder, "bench");
+  bench.then((module) => (atPort() ? showPort : showBench)({ ...partsOf(folder), ...module })).catch((error: unknown) => {
     document.body.append(el("main", {}, el("p", {}, `${sentenceOf(error)}; load it again.`)));
   });
+  await bench;
+}
+
+async function moduleOf<Data>({ file, worker: begun }: Folder, name: "bench" | "tuner"): Promise<Module<Data>> {
+  const worker = begun(name); // starts while its module is on the way
+  const [code, data] = await Promise.all([
+    file(`${name}.wasm`).then((answer) => answer.arrayBuffer()),
+    file(`${name}.json`).then((answer) => answer.json() as Promise<Data>),
+  ]);
+  return { code, data, worker };
+}
+
+/** The parts that are read when they are needed. */
+function partsOf(folder: Folder) {
+  const { file, docs } = folder;
+  return {
+    docs,
+    tuner: () => moduleOf<TunerData>(folder, "tuner"),
+    /** The rules of a calibration. */
+    calibration: async () => (await file("calibration.wasm")).arrayBuffer(),
+    /** The HEX file of a board, mega or nano. */
+    firmware: async (board: string) => ({ name: `${board}.hex`, text: await (await file(`${board}.hex`)).text() }),
+  };
 }
 
 function atPort(): boolean {
