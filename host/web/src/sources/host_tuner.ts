@@ -2,12 +2,13 @@
 
 import { inFile, rawOf } from "../files/raw_value";
 import { TABLE } from "../link/schema";
+import { freeName } from "../parts/file_words";
 import { SETTING_NAMES } from "../session/law";
 import type { Job, Json, Model, Searched, Services, Tuned, Tuner } from "../session/services";
 
 const COST = /^(?:cost|J) (\d+(?:\.\d+)?)$/; // in what the verb notes beside its progress
 const REACHES = "human-like reaches"; // the motion whose error is told
-const OUT = "controller";
+const OUT = "controller.toml";
 
 type Rows = readonly (readonly number[])[];
 type Named = Readonly<Record<string, number>>; // a parameter's value or raw value
@@ -36,7 +37,7 @@ export class HostTuner implements Tuner {
     const { jobs } = this.services;
     if (!this.listens) jobs.listen((job) => this.hear(job));
     this.listens = true;
-    const out = await this.freeName();
+    const out = freeName(OUT, (await this.services.state()).files);
     this.id = await jobs.start("tune", { model_file: model.name, out, ...(model.identified ? {} : { force: true }) });
     const course = new Course();
     const job = await this.end((running) => heard(course.of(running)));
@@ -67,15 +68,6 @@ export class HostTuner implements Tuner {
       };
       this.changed();
     });
-  }
-
-  /** A name that no file of the folder has. */
-  private async freeName(): Promise<string> {
-    const taken = new Set((await this.services.state()).files.map(({ name }) => name));
-    for (let number = 1; ; number++) {
-      const name = `${OUT}${number > 1 ? `-${number}` : ""}.toml`;
-      if (!taken.has(name)) return name;
-    }
   }
 
   private async tuned(edited: Rows, out: string, result: Result, heard: (searched: Searched) => void): Promise<Tuned> {

@@ -1,7 +1,7 @@
 // The fields of a form: one for each argument of a verb, by its kind, with its label in words.
 
 import { el, setText } from "../../parts/dom";
-import { fileWords } from "../../parts/file_words";
+import { fileWords, freeName } from "../../parts/file_words";
 import type { Argument, HostState, NamedFile } from "../../session/services";
 
 /** A field as its form sees it; an undefined value was left as it is. */
@@ -34,13 +34,10 @@ function fieldOf(argument: Argument): Field {
 }
 
 /** The name of a new file as usual, "" where that is free, or the next that is. */
-function freeName({ kind, default: usual }: Argument, { files }: HostState): string {
-  const taken = new Set(files.map(({ name }) => name));
-  if (kind !== "file" || typeof usual !== "string" || !taken.has(usual)) return "";
-  const [, stem = "", end = ""] = /^(.*?)(\.[^.]*)?$/.exec(usual) ?? [];
-  let number = 2;
-  while (taken.has(`${stem}-${number}${end}`)) number++;
-  return `${stem}-${number}${end}`;
+function proposed({ kind, default: usual }: Argument, { files }: HostState): string {
+  if (kind !== "file" || typeof usual !== "string") return "";
+  const free = freeName(usual, files);
+  return free === usual ? "" : free;
 }
 
 /** The folder's files that an argument takes, the newest first. */
@@ -142,7 +139,7 @@ class Line extends Labelled {
 
   override renew(state: HostState): void {
     const isOurs = this.target.value === this.proposed;
-    this.proposed = freeName(this.argument, state);
+    this.proposed = proposed(this.argument, state);
     if (isOurs) this.target.value = this.proposed;
   }
 
