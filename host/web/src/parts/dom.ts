@@ -49,6 +49,19 @@ export function tableHead(...titles: (string | HTMLElement)[]): HTMLElement {
   return el("thead", {}, el("tr", {}, ...cells));
 }
 
+/** Hears a pointer that is pressed on an element, then each of its moves until it is let go, also beyond the element. */
+export function onDrag(
+  element: GlobalEventHandlers & Element, pressed: (event: PointerEvent) => void, dragged: (event: PointerEvent) => void = pressed,
+): void {
+  element.addEventListener("pointerdown", (event) => {
+    element.setPointerCapture(event.pointerId);
+    pressed(event);
+  });
+  element.addEventListener("pointermove", (event) => {
+    if (element.hasPointerCapture(event.pointerId)) dragged(event);
+  });
+}
+
 const SVG = "http://www.w3.org/2000/svg";
 
 export function svg<Tag extends keyof SVGElementTagNameMap>(

@@ -1,6 +1,6 @@
 // A motion of the leader that a person draws: angle over time, joint by joint, played as by a hand.
 
-import { button, el, select, setText, svg } from "../../parts/dom";
+import { button, el, onDrag, select, setText, svg } from "../../parts/dom";
 import { JOINT_NAMES, JOINTS } from "../../session/samples";
 import type { LeaderControl } from "./leader_control";
 import { angleAt, pointed, shareOf, type Limits } from "./limits";
@@ -35,19 +35,11 @@ export class DrawnMotion {
       el("div", { class: "row" }, joint, duration, this.play, button("Clear", () => this.clear())),
       this.picture,
       el("p", { class: "quiet" }, "Drag from left to right; the highest and lowest angles are the leader's limits."));
-    this.wire();
-    this.show();
-  }
-
-  private wire(): void {
-    this.picture.addEventListener("pointerdown", (event) => {
-      this.picture.setPointerCapture(event.pointerId);
+    onDrag(this.picture, (event) => {
       this.strokes[this.joint]!.lift();
       this.drawTo(event);
-    });
-    this.picture.addEventListener("pointermove", (event) => {
-      if (this.picture.hasPointerCapture(event.pointerId)) this.drawTo(event);
-    });
+    }, (event) => this.drawTo(event));
+    this.show();
   }
 
   private drawTo(event: PointerEvent): void {

@@ -1,6 +1,6 @@
 // Leads the bench's leader arm by hand: sliders, and two pads on which two joints are dragged at once.
 
-import { el, setText } from "../../parts/dom";
+import { el, onDrag, setText } from "../../parts/dom";
 import { JOINT_NAMES, type Samples } from "../../session/samples";
 import type { LeaderControl } from "./leader_control";
 import { angleAt, pointed, shareOf, type Limits } from "./limits";
@@ -33,18 +33,11 @@ export class Lead {
     const knob = el("div", { class: "knob" });
     const follower = el("div", { class: "knob follower" });
     const pad = el("div", { class: "pad", title: "Drag: the follower (ring) follows" }, follower, knob);
-    const drag = (event: PointerEvent): void => {
+    onDrag(pad, (event) => {
       pointed(pad, event).forEach((share, axis) => {
         const joint = axis ? up : across;
         this.leaderControl.take(joint, angleAt(this.limits, joint, share));
       });
-    };
-    pad.addEventListener("pointerdown", (event) => {
-      pad.setPointerCapture(event.pointerId);
-      drag(event);
-    });
-    pad.addEventListener("pointermove", (event) => {
-      if (pad.hasPointerCapture(event.pointerId)) drag(event);
     });
     this.pads.push({ joints, knob, follower });
     return el("figure", {}, pad, el("figcaption", { class: "quiet" }, `${JOINT_NAMES[across]} →, ${JOINT_NAMES[up]} ↑`));

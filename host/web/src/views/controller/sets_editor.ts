@@ -1,7 +1,7 @@
 // The three fuzzy sets of one input as a picture whose corners can be dragged, or moved by the arrow keys.
 
 import { upperFirst } from "../../link/refusal";
-import { svg } from "../../parts/dom";
+import { onDrag, svg } from "../../parts/dom";
 import { cornerRange, SET_UNIT, type SetName, type Settings } from "../../session/law";
 
 const WIDTH = 520;
@@ -48,14 +48,10 @@ export class SetsEditor {
       class: "handle", tabindex: 0, role: "slider", "aria-label": upperFirst(name), // the paper's name: Ne_c
       "aria-valuemin": least / SET_UNIT, "aria-valuemax": most / SET_UNIT,
     }, svg("circle", { class: "reach", r: 16 }), svg("circle", { class: "knob", r: 6 }));
-    handle.addEventListener("pointerdown", (event) => {
-      handle.setPointerCapture(event.pointerId);
+    onDrag(handle, (event) => {
       handle.focus();
       event.preventDefault();
-    });
-    handle.addEventListener("pointermove", (event) => {
-      if (handle.hasPointerCapture(event.pointerId)) this.move(name, this.rawAt(event.clientX), name);
-    });
+    }, ({ clientX }) => this.move(name, this.rawAt(clientX), name));
     handle.addEventListener("pointerup", this.letGo);
     handle.addEventListener("keydown", (event) => {
       const sign = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1 }[event.key];
