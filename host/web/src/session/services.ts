@@ -1,9 +1,14 @@
 // The services of a host beside the board: files, predictions, verbs, a bench. Without one views hide what needs it.
 
 import type { NamedText } from "../parts/named_text";
-import type { ArmDescription, Heading, HostState, Job, KeptFile, OutsideTorque, Prediction, Verb } from "./host_types";
+import type { ArmDescription, Heading, HostState, Job, Json, KeptFile, OutsideTorque, Prediction, Verb } from "./host_types";
 
 export type * from "./host_types";
+
+/** The object that stands in a verb's answer, an empty one where anything else does. */
+export function objectIn(value: Json | undefined): { readonly [key: string]: Json } {
+  return typeof value === "object" && value !== null && !Array.isArray(value) ? (value as { readonly [key: string]: Json }) : {};
+}
 
 /** The files of the host's folder that verbs take or write. A name that is taken is refused, replaced, or gets a number. */
 export interface Files {

@@ -1,7 +1,7 @@
 // The way to one's own arm, step by step: what each is for, how far it is, the next thing to do, and what helps where it failed.
 
 import { Board } from "../../link/schema";
-import type { Json } from "../../session/services";
+import { objectIn } from "../../session/services";
 import type { Facts } from "./facts";
 
 /** Where a person is led from Start. */
@@ -118,8 +118,7 @@ function doctor(facts: Facts, paths: Paths): Step {
     verbs: ["doctor"],
     look: () => {
       if (!paths.open) return { done: null, words: "It needs greywhale on this computer: `greywhale doctor`." };
-      const result = facts.jobs.get("doctor")?.result ?? null;
-      const verdict = isRecord(result) ? result["verdict"] : undefined;
+      const { verdict } = objectIn(facts.jobs.get("doctor")?.result);
       if (verdict === undefined) return { done: false, words: "It has not looked since this page's server started." };
       return { done: verdict !== "bad", words: verdict === "bad" ? "It has found something to mend." : "Nothing must be mended." };
     },
@@ -216,8 +215,4 @@ function work(facts: Facts, paths: Paths): Step {
 
 function counted(files: readonly string[], what: string): string {
   return files.length ? `${files.length} ${what}${files.length > 1 ? "s" : ""}` : "";
-}
-
-function isRecord(value: Json): value is { readonly [key: string]: Json } {
-  return typeof value === "object" && value !== null && !Array.isArray(value);
 }

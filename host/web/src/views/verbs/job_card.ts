@@ -1,7 +1,7 @@
 // One job: how far it is, what it says and asks, its result or its error.
 
 import { button, el, setText } from "../../parts/dom";
-import type { Job, Jobs, Json } from "../../session/services";
+import { objectIn, type Job, type Jobs, type Json } from "../../session/services";
 import type { Telling } from "../../session/host_types";
 import type { ReadLog } from "./motions_picture";
 import { predictedBeside, trialsIn } from "./predicted";
@@ -65,7 +65,7 @@ export class JobCard {
 
   /** What the terminal says first; who wants each number opens the details. */
   private showResult(result: Json, telling: Telling | null): void {
-    const record: { readonly [key: string]: Json } = isRecord(result) ? result : {};
+    const record = objectIn(result);
     this.curve.end(record["curves"] ?? null);
     const trials = trialsIn(record);
     const pictures = [...setsPictures(record), ...(trials.length ? [predictedBeside(trials)] : [])];
@@ -73,10 +73,6 @@ export class JobCard {
     this.result.replaceChildren(
       el("div", { class: "told", attrs: { role: "group", "aria-label": "Result" } }, ...told), details(result, telling === null));
   }
-}
-
-function isRecord(value: Json): value is { readonly [key: string]: Json } {
-  return typeof value === "object" && value !== null && !Array.isArray(value);
 }
 
 /** The answer as a program gets it. */

@@ -1,7 +1,7 @@
 // The sets of a tuning, before and after, of every joint: the error's above those of its change.
 
 import { el, svg } from "../../parts/dom";
-import type { Json } from "../../session/services";
+import { objectIn, type Json } from "../../session/services";
 
 const WIDTH = 240;
 const HEIGHT = 46;
@@ -16,8 +16,8 @@ type Controllers = { readonly [name: string]: Json };
 
 /** Pictures of the sets in a result, none where it has no controllers before and after. */
 export function setsPictures(result: { readonly [key: string]: Json }): HTMLElement[] {
-  const before = controllersIn(result["before"]);
-  const after = controllersIn(result["after"]);
+  const before = objectIn(result["before"]);
+  const after = objectIn(result["after"]);
   const joints = [...new Set(Object.keys(after).map((name) => name.split(".")[0]!))];
   const pictures = joints.flatMap((joint) => {
     const pairs = Object.values(INPUTS).map((names) => [corners(before, joint, names), corners(after, joint, names)] as const);
@@ -27,10 +27,6 @@ export function setsPictures(result: { readonly [key: string]: Json }): HTMLElem
   const caption = el("figcaption", { class: "quiet" }, "Sets of the error, and of its change below: ",
     el("span", { class: "key key-leader" }), " before  ", el("span", { class: "key key-accent" }), " after");
   return [el("figure", { class: "motions" }, caption, ...pictures)];
-}
-
-function controllersIn(value: Json | undefined): Controllers {
-  return typeof value === "object" && value !== null && !Array.isArray(value) ? (value as Controllers) : {};
 }
 
 function corners(controllers: Controllers, joint: string, names: readonly string[]): Corners | null {
