@@ -7,7 +7,7 @@ import re
 from greywhale.protocol.schema import Fault
 from tools.attack.arm_faults import faults
 from tools.attack.page import INJECTED_AS, write_page, write_table
-from tools.attack.part import Part, Row
+from tools.attack.part import STAYED_ON, Part, Row
 from tools.attack.run import Result
 
 
@@ -27,6 +27,8 @@ def test_the_page_lists_the_faults_with_their_times_on_both_boards() -> None:
     assert "| leader open 2 of 3, 1 of 2, 2 of 4, 2 of 10 ms | 20 | none 20 |" in page
     apart = [Row(f"{board}: motor reversed", 5, n, {"runaway": 4 + n}, {}) for n, board in enumerate(("mega", "nano"))]
     assert "| motor reversed | 5 | 0/**1** |  | runaway 4/5 |" in write_page([Result(part, apart, 60.0)])
+    kept = [Row("nano: motor reversed", 5, 1, {"runaway": 4, STAYED_ON: 1}, {})]
+    assert "| nano: motor reversed | 5 | **1** |  | runaway 4 |" in write_page([Result(part, kept, 60.0)])
     mixed = Row("mega: motor reversed", 5, 0, {"runaway": 3, "speed": 2}, {"ms": 1.5})
     assert re.search(r"\| motor reversed \|  \|  \|", write_page([Result(part, [mixed], 60.0)])), "whose time is it?"
     assert set(INJECTED_AS) | {"none", "late_tick", "params", "tracking", "stalled", "unrest"} == {

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
 from tools import ROOT
-from tools.attack.part import Row, add_up
+from tools.attack.part import STAYED_ON, Row, add_up
 from tools.attack.run import Result, digest
 from tools.generate.link.declaration import load
 
@@ -15,11 +15,12 @@ HEAD = """<!-- Written by `make attack`; change the attacks, not this page. -->
 
 # Reliability
 
-{result} `make attack` counted every figure on this page, on the code whose digest stands
-below its table; `make test` runs a small share.
+{result} `make attack` counted every figure, on the code whose digest stands below
+its table; `make test` runs a small share.
 
 A violation is a trial that broke what its section says must hold. `a/b` is a on the Mega and b on the Nano; one number
-is that of either. `min` are the minutes of all workers together.
+is that of either; `min` are the minutes of all workers. Where motors run, `seen` counts what turned them off (`none`: no
+fault); in all other trials they stayed on.
 
 **Known and left open**: a potentiometer that lies slowly or below its breakaway voltage, and a leader's reading that
 glides like a hand ([why](firmware.md#how-a-follower-must-move), [what they cost](#slow-lies-and-two-faults-at-once)); a
@@ -31,9 +32,9 @@ seconds.
 FAULTS_HEAD = """## The faults and how soon the motors are off
 
 From the cause to the drivers' enable pin, the longest of all moments, to 0.25 ms ([causes and
-remedies](link.md#fault)). Without a time: other faults may end the trial as well, see its row below. Not in the table:
-`params` is found at start, with the motors off; the times of `tracking`, `stalled` and `unrest` are parameters; a hang
-with interrupts on turns the motors off as `late_tick`.
+remedies](link.md#fault)). Without a time: other faults may end the trial as well, see its row below. Not listed:
+`params` is found at start, motors off; the times of `tracking`, `stalled` and `unrest` are parameters; a hang with
+interrupts on turns the motors off as `late_tick`.
 """
 
 COLUMNS = ("tried", "trials", "violations", "worst", "seen")
@@ -88,7 +89,8 @@ def _by_name(rows: Iterable[Row]) -> list[tuple[str, list[list[str]]]]:
     found: dict[str, dict[str, list[str]]] = {}
     for row in _on_and_off(rows):
         worst = ", ".join(f"{value:.4g} {name}" for name, value in row.worst.items())
-        seen = ", ".join(f"{name} {count:,}" for name, count in sorted(row.counts.items(), key=lambda one: -one[1]))
+        counts = {name: count for name, count in row.counts.items() if name != STAYED_ON}
+        seen = ", ".join(f"{name} {count:,}" for name, count in sorted(counts.items(), key=lambda one: -one[1]))
         violations = f"**{row.violations:,}**" if row.violations else "0"
         board, name = re.fullmatch(r"(?i:(mega|nano): )?(.*)", row.tried).groups(default="")  # type: ignore[union-attr]
         found.setdefault(name, {})[board] = [f"{row.trials:,}", violations, worst, seen]
@@ -156,7 +158,7 @@ def _time(row: Row | None, fault: str) -> float | None:
     """The longest time until the motors were off, where it was this fault that turned them off."""
     if row is None:
         return None
-    off = row.trials - row.counts.get("motors stayed on", 0)
+    off = row.trials - row.counts.get(STAYED_ON, 0)
     return row.worst.get("ms") if row.counts.get(fault, 0) >= MOSTLY * off else None
 
 

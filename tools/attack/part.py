@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 Piece = dict[str, Any]  # JSON; says with its seed all that a piece depends on
+STAYED_ON = "motors stayed on"  # the trials of a row that nothing else it counts has ended
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ from functools import partial
 from greywhale_sim.wiring import BOARDS
 from tools.attack.arm_faults import LEASE_MS, Trial, arm_at_work, begin, faults, suffer
 from tools.attack.copies import in_a_copy
-from tools.attack.part import Part, Piece, Row, split
+from tools.attack.part import STAYED_ON, Part, Piece, Row, split
 
 MOMENTS, PER_PIECE = 250, 10
 AT_ONCE_MS = 10.0
@@ -41,7 +41,7 @@ def is_violation(name: str, trial: Trial) -> bool:
 
 
 def count(board: str, name: str, trial: Trial, limit: str = "") -> Row:
-    seen = trial.fault if trial.off_ms is not None else "motors stayed on"
+    seen = trial.fault if trial.off_ms is not None else STAYED_ON
     worst = {"rad": round(trial.gone_rad if name in BY_WAY else trial.wrong_rad, 3)} | (
         {} if trial.off_ms is None else {"ms": round(trial.off_ms, 2)}
     )
@@ -68,16 +68,14 @@ def pieces(share: float) -> list[Piece]:
 PART = Part(
     "faults",
     "From a fault to the motors off",
-    f"""The real images on both simulated boards with the default arm, a person's motion and the paper's controllers
-        before and after tuning, those with the numbers of travel that `tune` works out for this arm. At {MOMENTS:,}
-        random moments of a run each fault begins. The motors must be off within {AT_ONCE_MS:g} ms;
-        within {LEASE_MS + 2} ms for the lease, 20 ms for a hang (the watchdog's time) and for a wire that touches
-        only 2 ms in 10, 45 ms for an input that floats, 30 ms for a flood, 20 ms for a
-        leader that takes 20 ms to jump, 24 ms for a supply that sinks (the
-        brown-out detector acts after 23), 103 ms for a flipped bit. Some faults show only once the person moves that
-        joint. Then a way counts, at most {FARTHEST_RAD} rad: of the follower where a motor does not obey or a
-        potentiometer turns the other way, or by which the true error has grown where one lies. `ms` is the longest
-        time, `rad` the greatest such way.""",
+    f"""Both boards' real images, the default arm, a person's motion, and the paper's controllers before and after
+        tuning, those with the numbers of travel that `tune` works out. At {MOMENTS:,} random moments of a run each
+        fault begins. The motors must be off within {AT_ONCE_MS:g} ms; within {LEASE_MS + 2} for the lease, 20 for a
+        hang (the watchdog's time) and for a wire that touches only 2 ms in 10, 45 for an input that floats, 30 for a
+        flood, 20 for a leader that takes 20 ms to jump, 24 for a supply that sinks (the brown-out detector acts after
+        23), 103 for a flipped bit. Where a fault shows only once the person moves that joint, a way counts, at most
+        {FARTHEST_RAD} rad: of the follower where a motor does not obey or a potentiometer turns the other way, or by
+        which the true error has grown where one lies. `ms` is the longest time, `rad` the greatest such way.""",
     (
         "firmware/lib",
         "firmware/src",

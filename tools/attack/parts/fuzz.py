@@ -99,24 +99,22 @@ def reason(report: str) -> str:
 PART = Part(
     "fuzz",
     "Fuzzing the firmware",
-    """libFuzzer searches for inputs that break something, guided by what of the code they reach, from a corpus that is
-replayed in every `make test`, under AddressSanitizer and UndefinedBehaviorSanitizer. A trial is a run of one input. The
-first that breaks something ends its piece, and is one violation.
+    """libFuzzer searches for inputs that break something, guided by the code they reach, from a corpus that every
+`make test` replays, under AddressSanitizer and UndefinedBehaviorSanitizer. A trial is a run of one input. The first
+that breaks something ends its piece, and is one violation.
 
-An input for the whole firmware is a list of deeds: requests of every kind with any values, any frames and bytes, up to
-2,000 ticks at once, potentiometers that jump or are shaken, an arm that follows its motors well or badly, late and
-missing samples, lost bytes, a wire that does not take replies, the emergency stop, power cuts, damaged EEPROM cells.
-What must hold, seen through line, pins and EEPROM:
+An input for the whole firmware is a list of deeds: requests with any values, any frames and bytes, up to 2,000 ticks at
+once, potentiometers that jump or are shaken, an arm that follows well or badly, late and missing samples, lost bytes, a
+wire that does not take replies, the emergency stop, power cuts, damaged EEPROM cells. What must hold, seen through
+line, pins and EEPROM:
 
-- A set runs after an apply with its CRC and the motors off, or after unrest its safe form. It can be run, and is what
-  was staged, value by value. After a boot the set that was saved last runs.
-- Only enable, lead and the board itself after unrest start the motors. They are off with the reply to a stop, after a
-  late tick, in the third tick with a potentiometer at a rail, in the tick that sees the emergency stop, and when the
-  lease ends.
-- The voltage is the running set's, to the millivolt, from the angles that the board reports, within supply and soft
-  start; the duty is the nearest one.
-- A host that leads has a lease, stays within the limits and cannot make the reference jump.
-- The work between two ticks comes to rest; every request is answered.
+A set runs after an apply with its CRC and the motors off, or after unrest its safe form; it can be run, and is what was
+staged, value by value. After a boot the set that was saved last runs. Only enable, lead and the board itself after
+unrest start the motors. They are off with the reply to a stop, after a late tick, in the third tick with a
+potentiometer at a rail, in the tick that sees the emergency stop, and when the lease ends. The voltage is the running
+set's, to the millivolt, from the angles that the board reports, within supply and soft start; the duty is the nearest
+one. A host that leads has a lease, stays within the limits and cannot make the reference jump. The work between two
+ticks comes to rest; every request is answered.
 
 The frame codec is judged by a second decoder, written from the definition of COBS and the CRC; the parameter table by
 the ranges of its values.""",

@@ -9,7 +9,7 @@ from tools.attack.arm_faults import Trial, arm_at_work, begin, suffer
 from tools.attack.arm_on_board import ArmOnBoard
 from tools.attack.copies import in_a_copy
 from tools.attack.load import Watch
-from tools.attack.part import Part, Piece, Row, split
+from tools.attack.part import STAYED_ON, Part, Piece, Row, split
 from tools.attack.parts import faults
 from tools.attack.pot_lies import Inject
 from tools.attack.slow_lies import slow_lies
@@ -27,7 +27,7 @@ def try_lie(arm: ArmOnBoard, inject: Inject, joint: int) -> tuple[Trial, float]:
 
 
 def count(board: str, name: str, known: str, trial: Trial, load_v: float) -> Row:
-    seen = {trial.fault if trial.off_ms is not None else "motors stayed on": 1}
+    seen = {trial.fault if trial.off_ms is not None else STAYED_ON: 1}
     if trial.wrong_rad > faults.FARTHEST_RAD:
         seen[FAR] = 1
     return Row(f"{board}: {name}, {known}", 1, 0, seen, {"rad": round(trial.wrong_rad, 2), "V": round(load_v, 1)})
@@ -53,16 +53,15 @@ def pieces(share: float) -> list[Piece]:
 PART = Part(
     "lies",
     "Slow lies, and two faults at once",
-    f"""Nothing is promised here: the board finds these lies late or never. Boards, arm, motions and controllers are
-        those of the faults above, with {MOMENTS} moments, half of them with the tuned controllers and the numbers of
-        travel that `tune` works out, and {PATIENCE_S:g} s from each. `rad` is the greatest way by which the true
-        error has grown until the motors were off or the time was over (the first rows show the lag with nothing
-        wrong); "{FAR}" counts the trials with more. `V` is the load, in volts at the motor, under which an honest
-        joint would show the same, 95 % of the time: where that is no more than of a joint that a hand holds, no check
-        can tell the lie from the hand. A reading that drifts, or loses gain slowly, is followed; one that comes late,
-        or turns too little, lets the joint overshoot. A joint whose frozen reading holds it back stands still, but
-        with its motor reversed too, what should hold it against gravity drives it. Keep the emergency stop at hand,
-        and look at the arm.""",
+    f"""Nothing is promised here: the board finds these lies late or never. All is as for the faults above, with
+        {MOMENTS} moments, half of them with the tuned controllers and `tune`'s numbers of travel, and {PATIENCE_S:g} s
+        from each. `rad` is the greatest way by which the true error has grown (the first rows show the lag with
+        nothing wrong); "{FAR}" counts the trials with more. `V` is the load, in volts at the motor, under which an
+        honest joint would show the same, 95 % of the time: where a hand's hold shows as much, no check can tell the
+        lie from the hand. A reading that drifts, or loses gain slowly, is followed; one that comes late, or turns too
+        little, lets the joint overshoot. A joint whose frozen reading holds it back stands still, but with its motor
+        reversed too, what should hold it against gravity drives it. Keep the emergency stop at hand, and look at the
+        arm.""",
     (*faults.PART.depends, "tools/attack/load.py", "tools/attack/slow_lies.py", "tools/attack/parts/faults.py"),
     pieces,
     run,

@@ -87,19 +87,17 @@ PART = Part(
     "link",
     "A bad line",
     """A host works with the board (the firmware's own code on a computer) by requests of all kinds, and repeats what is
-not answered. On the way to the board bytes are hit, each way as likely as the others: a flipped bit, a burst of 2 to 8
-random bytes, a byte lost, doubled, inserted or swapped with the next, a frame cut short, two frames spliced, 1 to 40
-bytes of garbage between frames.
+not answered. On the way to the board bytes are hit, each way as often: a flipped bit, a burst of 2 to 8 random bytes, a
+byte lost, doubled, inserted or swapped with the next, a frame cut short, two spliced, 1 to 40 bytes of garbage between
+frames.
 
 What must hold: a set that runs is the one that this host meant, value by value. A stop that is understood turns the
-motors off. No damaged frame starts the motors. Every frame that comes whole behind a zero is understood: within 108
-bytes after a fault, two of the longest frames, which is 1.1 ms at 1 Mbaud.
+motors off. No damaged frame starts them. Every frame that comes whole behind a zero is understood within 108 bytes
+after a fault (two of the longest frames, 1.1 ms). No more damage acts than a CRC of 16 bits lets pass by chance, one
+piece in 65,536, of which COBS refuses most; what acted staged a value that the CRC of the apply then refused, moved the
+reference by a wrong step, or set another lease.
 
-A CRC of 16 bits lets some damage pass by chance, one piece in 65,536, and COBS refuses most of those; some of these
-frames acted (staged a value that the CRC of the apply then refused, moved the reference by a wrong step, set another
-lease). More than that would be violations.
-
-The other way, the host's decoder takes what a board sends, samples and status, over the same line.""",
+The other way, the host's decoder takes samples and status over the same line.""",
     (*depends(PROGRAM), "tools/attack/chance.py", "host/src/greywhale/protocol"),
     pieces,
     run,
