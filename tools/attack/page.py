@@ -19,8 +19,8 @@ HEAD = """<!-- Written by `make attack`; change the attacks, not this page. -->
 its table; `make test` runs a small share.
 
 A violation is a trial that broke what its section says must hold. `a/b` is a on the Mega and b on the Nano; one number
-is that of either; `min` are the minutes of all workers. Where motors run, `seen` counts what turned them off (`none`: no
-fault); in all other trials they stayed on.
+is that of either; `min` are the minutes of all workers. Where motors run, `seen` counts what turned them off (`none`:
+no fault); in all other trials they stayed on.
 
 **Known and left open**: a potentiometer that lies slowly or below its breakaway voltage, and a leader's reading that
 glides like a hand ([why](firmware.md#how-a-follower-must-move), [what they cost](#slow-lies-and-two-faults-at-once)); a

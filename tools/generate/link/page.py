@@ -17,7 +17,7 @@ def page(declaration: Declaration) -> str:
         f"<!-- {NOTICE} -->",
         "# The serial link",
         _frame(declaration),
-        "## Messages\n\nA field's line: its first byte, type, name and meaning. A request without one has no payload.",
+        "## Messages\n\nFields follow one another without gaps. A request of which none is told has no payload.",
         *_messages(declaration),
         "## Lists of values",
         *(_enum(enum) for enum in declaration.enums),
@@ -30,7 +30,7 @@ def page(declaration: Declaration) -> str:
 
 def _frame(declaration: Declaration) -> str:
     hello = next(message for message in declaration.messages if message.name == "hello")
-    return f"""For a program of your own that talks to a board, and for the meaning of a parameter. Protocol {declaration.protocol}, schema hash
+    return f"""For programs that talk to a board, and for the meaning of a parameter. Protocol {declaration.protocol}, schema hash
 `0x{declaration.schema_hash:08X}`. 1 Mbaud, 8 data bits, no parity, 1 stop bit.
 
 **Opening the port restarts most boards, and a byte keeps the Mega's bootloader for seconds.** So send nothing until the
@@ -42,7 +42,7 @@ wire:  COBS( type u8 | seq u8 | payload, at most {declaration.max_payload} bytes
 
 - Numbers are little-endian, two's complement. The CRC over type, seq and payload is CRC-16/CCITT-FALSE (polynomial
   0x1021, start 0xFFFF, no reflection, check value 0x29B1; Python: `binascii.crc_hqx(data, 0xFFFF)`).
-- The byte 00 stands between frames alone. Empty frames mean nothing, so a sender may begin with a 00.
+- The byte 00 stands between frames alone. Empty frames mean nothing: a sender may begin with a 00.
 - A request is answered by its type + 0x{REPLY_BIT:02X} with the same seq, or by `nack`. A host that hears nothing for 0.3 s
   sends the same frame again. A damaged frame (length, coding, CRC) is counted and not answered.
 - `hello`, and the protocol version as the first byte of its reply, stay in every version to come."""
@@ -73,13 +73,12 @@ def _messages(declaration: Declaration) -> list[str]:
 
 
 def _fields(side: str, message: Message) -> str:
-    """A message's size, and a line for each field: where it begins, its type and what it says."""
-    head = f"{side[0].upper()}{side[1:]}" + (f", {message.size} bytes:" if message.size else ".")
-    lines, offset = [], 0
-    for field in message.fields:
-        lines.append(f"- {offset}, {_type(field)} `{field.name}`: {_meaning(field)}")
-        offset += field.size
-    return "\n".join([head, "", *lines]) if lines else head
+    """A payload's only field behind its name, or its size and a line for each field: its type and what it says."""
+    head = f"{side[0].upper()}{side[1:]}"
+    told = [f"{_type(field)} `{field.name}`: {_meaning(field)}" for field in message.fields]
+    if len(told) < 2:
+        return " ".join([head, *told]) + "."
+    return "\n".join([f"{head}, {message.size} bytes:", "", *(f"- {line}" for line in told)])
 
 
 def _enum(enum: Enum) -> str:
