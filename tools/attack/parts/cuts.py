@@ -132,9 +132,10 @@ PART = Part(
     "cuts",
     "Power cuts while parameters are stored",
     """Both boards' real images. The supply goes at a random cycle of a save, at once or on a slope of up to 60 ms
-        through the brown-out detector's level, and the byte of EEPROM that was being written is torn. Afterwards the old or the
-        new set must run, the new one if its save had ended; a lost new set must be told as the fault `params`, unless
-        the EEPROM is bit by bit as before the save. Then another save must end well and outlast another cut.""",
+        through the brown-out detector's level, and the byte of EEPROM that was being written is torn. Afterwards the
+        old or the new set must run, the new one if its save had ended; a lost new set must be told as the fault
+        `params`, unless the EEPROM is bit by bit as before the save. Then another save must end well and
+        outlast another cut.""",
     ("firmware/lib", "firmware/src", "shared", "sim/board"),
     pieces,
     run,

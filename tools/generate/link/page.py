@@ -77,7 +77,7 @@ def _fields(side: str, message: Message) -> str:
     head = f"{side[0].upper()}{side[1:]}"
     told = [f"{_type(field)} `{field.name}`: {_meaning(field)}" for field in message.fields]
     if len(told) < 2:
-        return " ".join([head, *told]) + "."
+        return ", ".join([head, *told]) + "."
     return "\n".join([f"{head}, {message.size} bytes:", "", *(f"- {line}" for line in told)])
 
 
