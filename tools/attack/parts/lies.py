@@ -16,7 +16,7 @@ from tools.attack.slow_lies import slow_lies
 
 MOMENTS, PER_PIECE = 40, 5
 PATIENCE_S = 3.0
-FAR = f"beyond {faults.FARTHEST_RAD} rad"
+FAR = "far"
 
 
 def try_lie(arm: ArmOnBoard, inject: Inject, joint: int) -> tuple[Trial, float]:
@@ -55,13 +55,13 @@ PART = Part(
     "Slow lies, and two faults at once",
     f"""Nothing is promised here: the board finds these lies late or never. All is as for the faults above, with
         {MOMENTS} moments, half of them with the tuned controllers and `tune`'s numbers of travel, and {PATIENCE_S:g} s
-        from each. `rad` is the greatest way by which the true error has grown (the first rows show the lag with
-        nothing wrong); "{FAR}" counts the trials with more. `V` is the load, in volts at the motor, under which an
-        honest joint would show the same, 95 % of the time: where a hand's hold shows as much, no check can tell the
-        lie from the hand. A reading that drifts, or loses gain slowly, is followed; one that comes late, or turns too
-        little, lets the joint overshoot. A joint whose frozen reading holds it back stands still, but with its motor
-        reversed too, what should hold it against gravity drives it. Keep the emergency stop at hand, and look at the
-        arm.""",
+        from each. `rad` is the greatest way by which the true error has grown (the first rows show the lag with nothing
+        wrong); `{FAR}` counts the trials with more than {faults.FARTHEST_RAD} rad. `V` is the load, in volts at the
+        motor, under which an honest joint would show the same, 95 % of the time: where a hand's hold shows as much, no
+        check can tell the lie from the hand. A reading that drifts, or loses gain slowly, is followed; one that comes
+        late, or turns too little, lets the joint overshoot. A joint whose frozen reading holds it back stands still,
+        but with its motor reversed too, what should hold it against gravity drives it. Keep the emergency stop at hand,
+        and look at the arm.""",
     (*faults.PART.depends, "tools/attack/load.py", "tools/attack/slow_lies.py", "tools/attack/parts/faults.py"),
     pieces,
     run,

@@ -85,7 +85,7 @@ def _enum(enum: Enum) -> str:
     """A line for each value: its number, name and meaning, the detail, and of a fault what raises it and what to do."""
     lines = []
     for value in enum.values:
-        cause = f" Raised when: {value.cause}." if value.cause else ""
+        cause = f" When: {value.cause}." if value.cause else ""
         detail = f" Detail: {value.detail}." if value.detail not in ("", "0") else ""
         remedy = f" {value.remedy.replace(CLEAR, '')}" if value.cause else ""
         end = "." if cause or detail or remedy else ""
