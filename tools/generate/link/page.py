@@ -99,7 +99,8 @@ def _enum(enum: Enum) -> str:
 
 def _table(declaration: Declaration) -> str:
     return f"""{declaration.parameter_count} parameters, {declaration.table_size} bytes packed in index order; `param_crc` is their CRC. On the link a parameter is a raw
-integer: value = raw x lsb (1 where none stands). A line has index or place, name, type, range, lsb and default.
+integer: value = raw x lsb (1 where none stands). A line has index or place, name, type, range, lsb (as in the line
+above, where missing) and default.
 
 The EEPROM holds layout {declaration.layout}. An older bank lacks groups at the end, which get their defaults; a newer layout means the
 defaults. A bank is magic 0x5747 u16, layout u8, length u16, sequence u16, the table, and the CRC of layout to table u16. Bank A
@@ -131,24 +132,32 @@ def _group(group: Group, first: int, *, told: bool) -> str:
     step = len(group.parameters)
     last = first + group.count * step - 1
     where = f"Index {first}" + (f"..{last}" if last > first else "")
-    where += f": {first} + {step} x element + place." if group.count > 1 else "."
+    if group.count > 1:
+        where += f": {first} + {step} x element + place" if step > 1 else f": {first} + element"
+    where += "."
     if group.since > 1:
         where += f" Since layout {group.since}."
-    lines = [
-        f"- {place if group.count > 1 else first + place} {_parameter(group, one)}"
-        for place, one in enumerate(() if told else group.parameters)
-    ]
+    told_facts: str | None = None
+    lines: list[str] = []
+    for place, one in enumerate(() if told else group.parameters):
+        lines.append(f"- {place if group.count > 1 else first + place} {_parameter(group, one, told_facts)}")
+        told_facts = _facts(one)
     return "\n".join(
         [f"### {group.title}", "", f"{group.description} {where}".removeprefix(f"{group.title}. "), "", *lines]
     )
 
 
-def _parameter(group: Group, parameter: Parameter) -> str:
-    """Name, type, range with its unit, step where it is not 1, default and meaning."""
+def _facts(parameter: Parameter) -> str:
+    """Type, range with its unit, and the step where it is not 1."""
     lsb = parameter.lsb
     span = f"{_number(parameter.minimum, lsb)}..{_number(parameter.maximum, lsb)} {parameter.unit}".strip()
     facts = [parameter.kind, span + (", not 0" if parameter.nonzero else "")]
-    facts += [f"lsb {lsb}"] if lsb != 1 else []
+    return ", ".join([*facts, f"lsb {lsb}"] if lsb != 1 else facts)
+
+
+def _parameter(group: Group, parameter: Parameter, told: str | None) -> str:
+    """Name, type, range and step unless the line above has `told` the same, default and meaning."""
+    facts = "" if _facts(parameter) == told else f"{_facts(parameter)}; "
     below = f"; below {parameter.below}" if parameter.below else ""
     name = f"{group.name}N.{parameter.name}" if group.name else parameter.name
-    return f"`{name}` ({', '.join(facts)}; default {_default(parameter)}): {parameter.description}{below}"
+    return f"`{name}` ({facts}default {_default(parameter)}): {parameter.description}{below}"
