@@ -21,7 +21,7 @@ def test_the_page_lists_the_faults_with_their_times_on_both_boards() -> None:
     ]
     page = write_page([Result(part, rows, 60.0)])
     for name in INJECTED_AS:
-        assert re.search(rf"\| `{name}` \| .+ \| 3.25 \| 3.25 \|", page), name
+        assert re.search(rf"\| `{name}` \| .+ \| 3.25 \|", page), name
     assert set(INJECTED_AS.values()) <= set(faults())
     assert "In each row: 0 violations, 3.25 ms worst." in page
     assert "| leader open 2 of 3, 1 of 2, 2 of 4, 2 of 10 ms | 20 | none 20 |" in page
@@ -30,7 +30,7 @@ def test_the_page_lists_the_faults_with_their_times_on_both_boards() -> None:
     kept = [Row("nano: motor reversed", 5, 1, {"runaway": 4, STAYED_ON: 1}, {})]
     assert "| nano: motor reversed | 5 | **1** |  | runaway 4 |" in write_page([Result(part, kept, 60.0)])
     mixed = Row("mega: motor reversed", 5, 0, {"runaway": 3, "speed": 2}, {"ms": 1.5})
-    assert re.search(r"\| motor reversed \|  \|  \|", write_page([Result(part, [mixed], 60.0)])), "whose time is it?"
+    assert re.search(r"\| motor reversed \|  \|", write_page([Result(part, [mixed], 60.0)])), "whose time is it?"
     assert set(INJECTED_AS) | {"none", "late_tick", "params", "tracking", "stalled", "unrest"} == {
         fault.key for fault in Fault
     }

@@ -145,12 +145,12 @@ def write_faults(rows: Iterable[Row]) -> str:
     """The faults that the board reports: how each was injected, and the longest time until the motors were off."""
     seen = {row.tried: row for row in rows}
     enum = next(enum for enum in load(ROOT / "shared/link").enums if enum.name == "Fault")
-    lines = ["| fault | injected as | ms on the Mega | ms on the Nano |", "|---|---|--:|--:|"]
+    lines = ["| fault | injected as | ms |", "|---|---|--:|"]
     for value in enum.values:
         if injected := INJECTED_AS.get(value.name):
             times = [_time(seen.get(f"{board}: {injected}"), value.name) for board in ("mega", "nano")]
-            shown = " | ".join("" if time is None else f"{time:.4g}" for time in times)
-            lines.append(f"| `{value.name}` | {injected} | {shown} |")
+            shown = ("" if time is None else f"{time:.4g}" for time in times)
+            lines.append(f"| `{value.name}` | {injected} | {_on_both(*shown)} |")
     return "\n".join(lines) + "\n"
 
 
