@@ -52,7 +52,7 @@ class JointTrials:
         return sorted(passed, key=lambda one: one.verdict.ranking_cost)
 
     def priced(self) -> list[PricedRow]:
-        """The same, each controller once, with what it adds to a set's cost."""
+        """All that passed or can be borne, each once, the best first, with what it adds to a set's cost."""
         found: dict[bytes, PricedRow] = {}
         for one in self.ranked():
             found.setdefault(one.row.tobytes(), (one.row, one.verdict.share * one.verdict.ranking_cost))
