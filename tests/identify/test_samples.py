@@ -133,7 +133,7 @@ def test_rivals_take_every_third_row_and_the_draws_between_stay(
     path = tmp_path_factory.mktemp("model") / "model.toml"
     told = replace(outcome, found=replace(outcome.found, rivals=rivals))
     told.save(path)
-    assert "Nearly as good: backlash." in told.text()
+    assert "Nearly as good: backlash; creep." in told.text()
     plants, plain = sampled_plants(load_arm(path), 8), sampled_plants(model, 8)
     np.testing.assert_array_equal(plants[3], other)
     np.testing.assert_array_equal(plants[6], 2.0 * other)

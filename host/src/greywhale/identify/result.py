@@ -209,8 +209,9 @@ class IdentificationResult:
     def _tell_numbers(self, condition: float) -> list[Part]:
         """The searched numbers, and how well they are known."""
         least = "at least " if condition >= LARGEST_CONDITION else ""
+        rivals = "; ".join(rival.order for rival in self.found.rivals)
         lines = [
-            *(f"Nearly as good: {rival.order}." for rival in self.found.rivals),
+            *([f"Nearly as good: {rivals}."] if rivals else []),
             f"Model order: {self.found.order} (by held-out data).",
             f"Condition number of the Fisher information: {least}{condition:.2g}. So the best known combination of "
             f"parameters is {least}{condition**0.5:,.0f} times as well known as the least known.",
