@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import astuple, dataclass, field, replace
 from typing import Any
 
 from greywhale.arm import ArmParameters
@@ -87,4 +87,7 @@ def true_arm(kind: str, seed: int) -> ArmParameters:
     data = foreign.parameters.model_dump()
     for pot, play in zip(data["follower_pots"]["joint"], foreign.play, strict=True):
         pot["play"] = float(play)
+    if foreign.gears is not None:
+        for joint, *teeth in zip(data["joint"], *astuple(foreign.gears), strict=True):
+            joint["gear"] = dict(zip(("half_gap", "stiffness", "damping"), map(float, teeth), strict=True))
     return ArmParameters.model_validate(data, strict=False)
