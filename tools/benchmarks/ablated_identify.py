@@ -34,8 +34,13 @@ APART = (
     "uncertainty.uncertain",
     "uncertainty.sharper",
 )
-# A held-out block has at least one window, and a change of start must leave less.
-CLOSER = {"data.window_s": (0.3, 0.7), "data.block_s": (0.5, 1.0), "windows.worth_a_change": (0.9, 0.975)}
+# A held-out block has at least one window, the log has at least one such block, and a change of start must leave less.
+CLOSER: dict[str, tuple[Any, Any]] = {
+    "data.window_s": (0.3, 0.7),
+    "data.block_s": (0.5, 1.0),
+    "data.held_out_every": (3, 5),
+    "windows.worth_a_change": (0.9, 0.975),
+}
 NEVER = 1e9
 # What switches a rule off.
 OFF: dict[str, Any] = {
