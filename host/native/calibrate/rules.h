@@ -61,7 +61,7 @@ Answer match(Given given);
 // Two poses (4 + 4), and four times whether a joint is in use: words where no scale can be told from them.
 Answer require_apart(Given given);
 
-// Eight counts of a pose, and eight of the same pose held again: words for each potentiometer that has slipped.
+// Eight counts of a pose, and eight of the same pose held again: words that name those that are elsewhere.
 Answer slipped(Given given);
 
 // Four times whether a joint is in use, eight zeros and scales, and eight counts of a pose from which nothing was

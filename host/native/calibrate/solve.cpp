@@ -185,14 +185,15 @@ Answer match(Given given) {
 
 Answer slipped(Given given) {
   const double *before = given.some(kPots), *after = given.some(kPots);
-  Answer answer;
+  std::string moved;
   for (std::size_t pot = 0; pot < kPots; ++pot) {
     const double apart = std::abs(after[pot] - before[pot]);
-    if (apart > kSlippedCounts)
-      add_line(answer.words, pot_first(pot) + text(" reads %.0f counts elsewhere in the same pose: it slips on its "
-                                                   "shaft; tighten it, and begin anew.",
-                                                   apart));
+    if (apart > kSlippedCounts) moved += (moved.empty() ? "" : ", ") + pot_name(pot) + text(" (by %.0f counts)", apart);
   }
+  Answer answer;
+  if (!moved.empty())
+    answer.words = "elsewhere than in the first pose: " + moved +
+                   "; hold that pose again, and if it was held, tighten what slips on its shaft, and begin anew.";
   return answer;
 }
 

@@ -152,7 +152,7 @@ FAULTS = (
     Fault(
         "pot-slipping", "pot", "Shaft slips",
         "its shaft slips and loses a part of every way up", "calibrate",
-        r"<pot> (reads? \d+|reaches an end|turned the other way)", _at_pot(PotFault.SLIPPING),
+        r"<pot> (reads? \d+|reaches an end|turned the other way|\(by \d+ counts\))", _at_pot(PotFault.SLIPPING),
     ),
     Fault(
         "pot-frozen", "pot", "Shaft does not turn",

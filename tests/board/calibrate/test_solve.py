@@ -97,9 +97,8 @@ def test_the_same_pose_twice_shows_what_slipped() -> None:
     first = pose(FIRST, SCALE, ZERO)
     again = first.counts.copy()
     again[1] += 9.0
-    (told,) = slipped(first, Pose(FIRST, again))
-    assert told.startswith("Leader potentiometer 1 reads 9 counts elsewhere")
-    assert slipped(first, Pose(FIRST, first.counts + 7.0)) == []
+    assert "first pose: leader potentiometer 1 (by 9 counts); " in slipped(first, Pose(FIRST, again))
+    assert slipped(first, Pose(FIRST, first.counts + 7.0)) == ""
 
 
 def test_limits_keep_within_what_the_firmware_takes() -> None:

@@ -48,8 +48,8 @@ class Arms:
         for row in SWEEP:
             self.coming.append(self.at + row * np.isin(np.arange(8), pots))
 
-    def hold(self, rad: float) -> None:
-        self.at = np.full(8, 500.0) + COUNTS_PER_RAD * rad
+    def hold(self, rad: float, apart: float) -> None:
+        self.at = np.full(8, 500.0) + COUNTS_PER_RAD * np.repeat([rad, rad + apart], 4)
 
     def samples(self) -> list[schema.Sample]:
         rows, self.coming = (self.coming or [self.at + self.drift * ms for ms in range(CALIBRATION.held_ticks)]), []
@@ -108,8 +108,8 @@ def turns(*pots: int) -> Callable[[Arms], None]:
     return lambda arms: arms.turn(*pots)
 
 
-def holds(rad: float) -> Callable[[Arms], None]:
-    return lambda arms: arms.hold(rad)
+def holds(rad: float, apart: float = 0.0) -> Callable[[Arms], None]:
+    return lambda arms: arms.hold(rad, apart)
 
 
 def drifts(counts: float) -> Callable[[Arms], None]:
@@ -207,6 +207,29 @@ def test_many_mistakes_in_one_sweep_lose_no_other() -> None:
     way.go()
     assert script.left == []
     assert sum("did not move: check that its shaft" in told for told in script.told) == CALIBRATION.script_tries + 3
+
+
+@pytest.mark.parametrize("patient", [True, False])
+def test_a_pose_that_contradicts_what_was_before_comes_again_for_a_person(patient: bool) -> None:
+    """The third one is not the first one again; the fourth one is held differently by the arms."""
+    steps: list[Step] = [*POSES[:2], ("Pose 3 of 4", holds(-0.4), DONE)]
+    again: list[Step] = [
+        ("Pose 3 of 4", holds(-0.4), BACK),
+        *POSES[1:3],
+        ("Pose 4 of 4", holds(-0.4, 0.5), DONE),
+        POSES[3],
+    ]
+    script, way = walk([*sweeps([0, 4]), *steps, *(again if patient else [])], (0,), patient)
+    if patient:
+        way.go()
+        assert "leader potentiometer 0 (by " in script.told[-2]
+        assert "follower potentiometer 0 (by " in script.told[-2]
+        assert "leader and follower differ by 0.50 rad at joint 0" in script.told[-1]
+        assert all(told.endswith("This pose comes again; b goes back to an earlier step.") for told in script.told[-2:])
+    else:
+        with pytest.raises(UserError, match="port: elsewhere than in the first pose: leader potentiometer 0 "):
+            way.go()
+    assert script.left == []
 
 
 def test_a_script_makes_a_mistake_but_a_few_times() -> None:

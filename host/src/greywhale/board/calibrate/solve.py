@@ -81,9 +81,9 @@ def match(calibration: Calibration, sweeps: Sequence[Sweep], first: Pose, same: 
     return _calibration("match", sweeps, calibration.joints, *known)
 
 
-def slipped(before: Pose, after: Pose) -> list[str]:
-    """A sentence for each potentiometer that reads something else where the same pose is held again."""
-    return words("slipped", before.counts, after.counts).splitlines()
+def slipped(before: Pose, after: Pose) -> str:
+    """A sentence about the potentiometers that read something else where the same pose is held again; "" for none."""
+    return words("slipped", before.counts, after.counts)
 
 
 def require_apart(first: Floats, second: Floats, joints: Sequence[int]) -> None:

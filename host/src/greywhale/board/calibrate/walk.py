@@ -11,7 +11,7 @@ from greywhale.board.calibrate.person import PersonAnswer, Watch
 from greywhale.board.calibrate.rules import ask
 from greywhale.board.calibrate.solve import Calibration, Pose, apart, match, slipped, solve
 from greywhale.board.calibrate.sweep import Sweep, judge_sweep
-from greywhale.board.calibrate.words import MEND, joint_name, sweep_asked
+from greywhale.board.calibrate.words import MEND, MEND_POSE, joint_name, sweep_asked
 from greywhale.board.limits import CALIBRATION
 from greywhale.board.pots import POTS, read_counts
 from greywhale.board.refusal import upper_first
@@ -98,7 +98,14 @@ class Walk:
             self._refuse(what, moved, "the arms were not held still; lay them on a support, and begin anew.")
             return PersonAnswer.AGAIN
         self._poses[number] = Pose(angles, means)
-        self._check(number)
+        try:
+            self._check(number)
+        except UserError as mistake:
+            if not self._watch.guide.patient:
+                raise
+            sentence = mistake.message.removeprefix(f"{self._watch.device.port}: ")
+            self._watch.guide.tell(f"{upper_first(sentence)} {MEND_POSE}")
+            return PersonAnswer.AGAIN
         return answer
 
     def _refuse(self, step: str, mistake: str, at_last: str) -> None:
@@ -113,7 +120,7 @@ class Walk:
         if number == 1:
             self._found()
         if number == 2 and (moved := slipped(self._poses[0], self._poses[2])):
-            raise UserError(" ".join(moved))
+            raise UserError(f"{self._watch.device.port}: {moved}")
         if number == 3:
             self._compare()
 

@@ -18,6 +18,7 @@ HOW_TO_ANSWER = (
     "Enter: done. b: back to the step before. a: this step again. s: this sweep later. q: end; nothing is stored then."
 )
 MEND = "mend it, then comes this sweep again. Enter: now. b: the one before. s: this one later. q: end."
+MEND_POSE = "This pose comes again; b goes back to an earlier step."
 
 
 def joint_name(pot: int) -> str:
