@@ -6,27 +6,41 @@ Debian's libsimavr-dev is linked with the sources of sim/board, whose cpu.cpp gi
 from __future__ import annotations
 
 import ctypes
+import hashlib
+import os
 import subprocess
+import tempfile
 from collections.abc import Iterable
 from pathlib import Path
 
 from tools import ROOT
+from tools.setup import stamps
 
 HERE = Path(__file__).parent / "simavr"
 BOARD = ROOT / "sim" / "board"
 REPLACED = {"binding.cpp", "cpu.cpp"}
 COMPILE = ["g++", "-std=c++17", "-O1", "-shared", "-fPIC", "-Wall", "-Wextra", "-Werror", f"-I{BOARD}"]
-SIMAVR = ["-isystem", "/usr/include/simavr"]
+SIMAVR = Path("/usr/include/simavr")
+KEPT = ROOT / "build" / "oracles"
 ROOM = 1 << 16  # for bytes that were sent
 
 
-def build(folder: Path) -> ctypes.CDLL:
-    """Compile the board with simavr's CPU, and load it."""
-    library = folder / "simavr_board.so"
+def build() -> ctypes.CDLL:
+    """Load the board with simavr's CPU, as it was made of these files and commands; else make it first."""
     sources = [*(one for one in sorted(BOARD.glob("*.cpp")) if one.name not in REPLACED), *sorted(HERE.glob("*.cpp"))]
-    command = [*COMPILE, *SIMAVR, "-o", str(library), *map(str, sources), "-lsimavr"]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stderr
+    command = [*COMPILE, "-isystem", str(SIMAVR), *map(str, sources), "-lsimavr"]
+    theirs = hashlib.sha256(b"".join(path.read_bytes() for path in sorted(SIMAVR.rglob("*.h")))).hexdigest()
+    compiler = subprocess.run([COMPILE[0], "--version"], capture_output=True, text=True, check=True).stdout
+    made_of = stamps.digest(stamps.files_below("sim", "tests/oracles/simavr"), *command, theirs, compiler)
+    library = KEPT / f"simavr_board-{made_of[:16]}.so"
+    if not library.exists():
+        KEPT.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryDirectory(dir=KEPT) as folder:  # another worker may do the same now
+            done = subprocess.run([*command, "-o", f"{folder}/new.so"], capture_output=True, text=True, check=False)
+            assert done.returncode == 0, done.stderr
+            os.replace(f"{folder}/new.so", library)
+        for old in set(KEPT.glob("simavr_board-*.so")) - {library}:
+            old.unlink(missing_ok=True)
     calls = ctypes.CDLL(str(library))
     calls.simavr_new.restype = ctypes.c_void_p
     for name in ("cycle", "trace_hash"):

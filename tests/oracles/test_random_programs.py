@@ -27,8 +27,8 @@ ENDED = 1
 
 
 @pytest.fixture(scope="module")
-def simavr(tmp_path_factory: pytest.TempPathFactory) -> ctypes.CDLL:
-    return simavr_board.build(tmp_path_factory.mktemp("simavr"))
+def simavr() -> ctypes.CDLL:
+    return simavr_board.build()
 
 
 def made(chip: str, folder: Path) -> list[RandomProgram]:

@@ -21,8 +21,8 @@ Boards = Callable[[str], tuple[Any, Any]]
 
 
 @pytest.fixture(scope="session")
-def simavr(tmp_path_factory: pytest.TempPathFactory) -> ctypes.CDLL:
-    return build(tmp_path_factory.mktemp("simavr"))
+def simavr() -> ctypes.CDLL:
+    return build()
 
 
 @pytest.fixture
