@@ -22,7 +22,7 @@ from greywhale.files.trajectory import Trajectory
 from greywhale_sim.words import lock_step
 from tests.support.arms import make_arm, with_joints
 from tests.support.demo import in_this_process
-from tests.support.tuning import few_plants, judge_nothing, shorten
+from tests.support.tuning import few_orders, few_plants, judge_nothing, shorten
 from tools import ROOT
 
 
@@ -35,6 +35,7 @@ def test_the_demo_tells_its_story_and_proves_its_controllers_on_the_arm(
     shorten(monkeypatch)
     judge_nothing(monkeypatch)
     few_plants(monkeypatch)
+    few_orders(monkeypatch)
     monkeypatch.setattr(practice, "GOOD_BUDGET", 30)
     monkeypatch.setattr(story, "PROVING_TRIALS", 1)
     short = MotionLimits(

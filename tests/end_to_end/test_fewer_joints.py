@@ -24,7 +24,7 @@ from greywhale.loop.closed_loop import ClosedLoop, Result
 from greywhale.protocol.schema import Board
 from greywhale.tune.model import load_model
 from tests.support.arms import with_joints
-from tests.support.tuning import judge_nothing, shorten
+from tests.support.tuning import few_orders, judge_nothing, shorten
 from tools.support.calibrating_person import SECOND_DEG, CalibratingPerson, bench_of, mounted_anyhow, run_calibrate
 
 JOINTS, IDLE = [0, 2], [1, 3]
@@ -65,6 +65,7 @@ def test_two_joints_on_a_nano_from_the_box_to_a_following_arm(
     monkeypatch.chdir(tmp_path)
     shorten(monkeypatch)
     judge_nothing(monkeypatch)
+    few_orders(monkeypatch)
     largest = full_duties_of_every_loop(monkeypatch)
     (tmp_path / "white.toml").write_text(arm_toml(with_joints((0, 2), "white_box"), "Two joints."))
     save_leader(tmp_path / "motion.csv", human_reaches(1, 5.0))

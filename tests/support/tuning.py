@@ -10,7 +10,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from greywhale.identify import bootstrap, sampled_plants
+from greywhale.identify import bootstrap, sampled_plants, search
 from greywhale.loop import human_reaches
 from greywhale.tune import default, model
 from greywhale.tune.judge import held_out
@@ -73,3 +73,8 @@ def judge_nothing(patch: pytest.MonkeyPatch) -> None:
 def few_plants(patch: pytest.MonkeyPatch) -> None:
     """For tests of more than a tuning: a model stands for few arms beside its own."""
     patch.setattr(model, "sampled_plants", lambda arm, samples, seed: sampled_plants(arm, min(samples, 2), seed))
+
+
+def few_orders(patch: pytest.MonkeyPatch) -> None:
+    """For tests of more than an identification: of what a model may have beside its motors, one order is tried."""
+    patch.setattr(search, "TURNS", search.TURNS[:1])
