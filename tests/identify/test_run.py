@@ -143,7 +143,7 @@ def test_without_its_controller_a_log_is_still_worth_something(shoulder: Recorde
     """Only the logged voltages remain; at a tenth of the rows, as another tool may log."""
     origin = replace(shoulder.fit.origin, param_crc=None, firmware=None, every_ticks=10)
     old = Condition(remarks=("it has no check.",))
-    log = rows(replace(first(shoulder.fit, 6.0), origin=origin, condition=old), slice(None, None, 10))
+    log = rows(replace(first(shoulder.fit, 4.5), origin=origin, condition=old), slice(None, None, 10))
     outcome = identify([log], white_box)
     assert outcome.verdicts[0].measure.startswith("logged voltages")
     assert outcome.verdicts[0].improvement > 0.8
