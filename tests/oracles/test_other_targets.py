@@ -19,6 +19,7 @@ from greywhale import _native
 from greywhale.arm import ArmParameters
 from greywhale.arm.plants import column, columns
 from greywhale.files.arm import default_arm, load_arm
+from greywhale.files.trajectory import Trajectory
 from greywhale.loop import CONTROLLER_COLUMNS, PLANT_COLUMNS, Experiment, Timing, human_reaches, plant_row
 from greywhale.loop.leader import leader_slices
 from greywhale.protocol.schema import Board
@@ -46,6 +47,9 @@ CMAKE = {
         "TRY_COMPILE_TARGET_TYPE": "STATIC_LIBRARY",
     },
 }
+
+
+MOVES_S = 1.6  # a product that is rounded otherwise shows within a tick
 
 
 @dataclass(frozen=True)
@@ -102,7 +106,9 @@ def with_curved_pots(arm: ArmParameters) -> ArmParameters:
 
 
 def experiment(name: str) -> Experiment:
-    leader, arm = human_reaches(4, 2.0), default_arm()
+    whole, arm = human_reaches(4, 2.0), default_arm()
+    moved = whole.time_s < MOVES_S
+    leader = Trajectory(whole.time_s[moved], whole.angles[moved])
     if name == "mega":
         return Experiment(leader, arm, wait_s=0.2)
     if name == "nano, no noise, no soft start":
