@@ -30,13 +30,17 @@ def build_sdist(package: str, source: Path, out: Path) -> Path:
     return made
 
 
-def build_wheel(sdist: Path, out: Path, python: Path = venv.PYTHON) -> Path:
-    """A wheel for this machine and this Python, in `out`; another Python than .venv's fetches its own build tools."""
+def build_wheel(sources: Path, out: Path, python: Path = venv.PYTHON, kept: Path | None = None) -> Path:
+    """A wheel for this machine and this Python, in `out`; another Python than .venv's fetches its own build tools.
+
+    From a source distribution, or from a folder with what one holds. What is compiled stays in the folder `kept`.
+    """
     own = ["--no-build-isolation"] if python == venv.PYTHON else []
+    own += [f"--config-settings=build-dir={kept}"] if kept else []
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         pip = [str(python), "-m", "pip", "wheel", "--quiet", "--disable-pip-version-check", "--no-deps", *own]
-        run([*pip, "--wheel-dir", name, str(sdist)], what=f"The wheel of {sdist.name}", env=venv.environment())
+        run([*pip, "--wheel-dir", name, str(sources)], what=f"The wheel of {sources.name}", env=venv.environment())
         (made,) = folder.iterdir()
         if not made.name.endswith(FOR_ALL):
             repaired = folder / "repaired"
