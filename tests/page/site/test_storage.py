@@ -14,17 +14,21 @@ from tests.page.storage import FORBIDDEN, NONE
 pytestmark = pytest.mark.slow
 
 KEPT, ASIDE = "greywhale-eeprom-mega", "greywhale-eeprom-damaged"
-# Damaged content, with room beside it for so many letters.
+# Damaged content, with room beside it for so many letters. What is large gets an entry of its own: each change of an entry
+# hands all of it on to another process.
 FILL = """([key, text, room]) => {
   localStorage.clear();
   localStorage.setItem(key, text);
-  for (let size = 1 << 23, all = ""; size; size >>= 1) {
+  let rest = "";
+  for (let size = 1 << 23; size; size >>= 1) {
     try {
-      localStorage.setItem("other", all + "x".repeat(size));
-      all += "x".repeat(size);
-    } catch {}
+      if (size < 1024) localStorage.setItem("rest", (rest = rest + "x".repeat(size)));
+      else localStorage.setItem(`${size}`, "x".repeat(size));
+    } catch {
+      rest = localStorage.getItem("rest") ?? "";
+    }
   }
-  localStorage.setItem("other", localStorage.getItem("other").slice(room));
+  localStorage.setItem("rest", rest.slice(room));
 }"""
 # It is filled between two pages: one that runs keeps its own board's memory there.
 AT_ITS_START = f"""{{
