@@ -51,10 +51,14 @@ def press(page: Page, name: str) -> None:
 
 
 def live_until(page: Page, stage: Stage, text: str) -> None:
-    """Let the board live until the page shows this."""
+    """Let the board live until the page shows this.
+
+    It goes on once the page has drawn: on a quick machine it would live for minutes meanwhile.
+    """
     shown = page.locator(".calibrate").get_by_text(text)
     while not shown.count():
-        stage.live(0.1)
+        stage.live(0.5)
+        page.evaluate("() => new Promise(requestAnimationFrame)")
 
 
 def refuse_a_pose_that_is_not_held(page: Page, stage: Stage) -> None:
