@@ -14,8 +14,8 @@ from tests.page.storage import FORBIDDEN, NONE
 pytestmark = pytest.mark.slow
 
 KEPT, ASIDE = "greywhale-eeprom-mega", "greywhale-eeprom-damaged"
-# Damaged content, with room beside it for so many letters. What is large gets an entry of its own: each change of an entry
-# hands all of it on to another process.
+# Damaged content, with room beside it for so many letters. What is large gets an entry of its own: with each change of
+# an entry all of it goes to another process.
 FILL = """([key, text, room]) => {
   localStorage.clear();
   localStorage.setItem(key, text);
