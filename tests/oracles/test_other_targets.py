@@ -105,10 +105,14 @@ def with_curved_pots(arm: ArmParameters) -> ArmParameters:
     return arm.model_copy(update={"follower_pots": arm.follower_pots.model_copy(update={"joint": tuple(pots)})})
 
 
-def experiment(name: str) -> Experiment:
-    whole, arm = human_reaches(4, 2.0), default_arm()
+def short_motion() -> Trajectory:
+    whole = human_reaches(4, 2.0)
     moved = whole.time_s < MOVES_S
-    leader = Trajectory(whole.time_s[moved], whole.angles[moved])
+    return Trajectory(whole.time_s[moved], whole.angles[moved])
+
+
+def experiment(name: str) -> Experiment:
+    leader, arm = short_motion(), default_arm()
     if name == "mega":
         return Experiment(leader, arm, wait_s=0.2)
     if name == "nano, no noise, no soft start":
@@ -194,7 +198,7 @@ def test_identification_windows(calls: Calls, driver: Driver, tmp_path: Path) ->
 
 
 def test_ideal_law(calls: Calls, driver: Driver, tmp_path: Path) -> None:
-    slices = leader_slices(human_reaches(4, 2.0), 0.5)
+    slices = leader_slices(short_motion(), 0.5)
     tunings = np.tile([1.1, 0.02, 1.0, 1.0], (3, 4, 1)) * np.array([1.0, 1.1, 1.2])[:, None, None]
     direction = np.where(np.arange(len(slices)) % 4000 < 1500, 1, 0).astype(np.int8)
     for arm in ("default", "white_box", "worn"):
