@@ -86,7 +86,7 @@ def true_arm(kind: str, seed: int) -> ArmParameters:
     foreign = foreign_arm_with(seed, traits_of(kind))
     data = foreign.parameters.model_dump()
     for pot, play in zip(data["follower_pots"]["joint"], foreign.play, strict=True):
-        pot["play"] = float(play)
+        pot["play"] = 0.5 * float(play)
     if foreign.gears is not None:
         for joint, *teeth in zip(data["joint"], *astuple(foreign.gears), strict=True):
             joint["gear"] = dict(zip(("half_gap", "stiffness", "damping"), map(float, teeth), strict=True))
