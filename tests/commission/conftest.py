@@ -12,7 +12,8 @@ from greywhale.commission.journal import CommissioningJournal
 from greywhale.commission.motions import check_motion
 from greywhale.commission.trials import Trials
 from greywhale.files.arm import default_arm
-from tests.commission.simulated import ROOM, SimulatedRig, options_in
+from tests.commission.simulated import options_in
+from tools.support.simulated_rig import ROOM, SimulatedRig
 
 
 @pytest.fixture

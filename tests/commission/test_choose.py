@@ -11,8 +11,9 @@ from greywhale.commission.arm_on_port import ArmOnPort
 from greywhale.commission.choose import JointTrials, combine_best, confirm
 from greywhale.commission.trials import Trial, Trials
 from greywhale.loop.controllers import controllers_of
-from tests.commission.simulated import KI, KP, SimulatedRig
+from tests.commission.simulated import KI, KP
 from tests.commission.test_trials import BETTER, WILD, play, play_before, stiffer
+from tools.support.simulated_rig import SimulatedRig
 
 
 def chosen(trials: Trials, joints: list[JointTrials], rig: SimulatedRig, tuned: np.ndarray | None = None) -> Trial:

@@ -16,8 +16,9 @@ from greywhale.loop import multi_steps
 from greywhale.loop.controllers import controllers_of
 from greywhale.measure.swings import unrest
 from greywhale.tune.judge.margins import with_gain
-from tests.commission.simulated import KD, KI, KP, SimulatedRig
+from tests.commission.simulated import KD, KI, KP
 from tests.support.arms import make_arm
+from tools.support.simulated_rig import SimulatedRig
 
 
 @pytest.fixture

@@ -12,7 +12,8 @@ from greywhale.board.stream import LeaseLostError
 from greywhale.commission import CommissioningRequest, commission
 from greywhale.commission.journal import AnewError
 from greywhale.protocol.transport import PortDisturbedError, PortLostError
-from tests.commission.simulated import SimulatedRig, in_no_time
+from tests.commission.simulated import in_no_time
+from tools.support.simulated_rig import SimulatedRig
 
 GOES_ON = "The same command with --resume goes on in {}."
 

@@ -11,7 +11,7 @@ from greywhale.files.log import Log
 from greywhale.files.log.layout import Origin
 from greywhale.loop.traces import Traces
 from greywhale.protocol.firmware import FASTEST_LED_RAD_S, POINT_S, TICK_S
-from tests.commission.simulated import ROOM
+from tools.support.simulated_rig import ROOM
 
 
 def log_of(leader: np.ndarray, follower: np.ndarray, drop: int = 0) -> Log:

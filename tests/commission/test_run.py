@@ -23,10 +23,11 @@ from greywhale.files.log import Log, read_log
 from greywhale.files.model import arm_toml
 from greywhale.loop.controllers import controllers_of
 from greywhale.protocol.table import ParameterTable
-from tests.commission.simulated import KP, SimulatedRig, in_no_time, options_in
+from tests.commission.simulated import KP, in_no_time, options_in
 from tests.support.arms import make_arm
 from tests.support.limits import copy_of, reads_of
 from tests.tune.models import write_model
+from tools.support.simulated_rig import SimulatedRig
 
 pytestmark = pytest.mark.slow
 Make = Callable[..., CommissioningRequest]

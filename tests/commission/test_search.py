@@ -23,9 +23,10 @@ from greywhale.files.arm import default_arm
 from greywhale.loop.controllers import controllers_of
 from greywhale.tune.judge.margins import with_gain
 from greywhale.tune.model import load_model
-from tests.commission.simulated import KD, KI, KP, ROOM, SimulatedRig
+from tests.commission.simulated import KD, KI, KP
 from tests.support.limits import copy_of, reads_of
 from tests.tune.models import write_model
+from tools.support.simulated_rig import ROOM, SimulatedRig
 
 pytestmark = pytest.mark.slow
 ALL = np.ones(4, dtype=bool)

@@ -16,8 +16,8 @@ from greywhale.files.log import Log
 from greywhale.files.log.layout import Origin
 from greywhale.protocol.table import ParameterTable
 from greywhale.tune.board_checks import refuse_uncalibrated
-from tests.commission.simulated import ROOM, SimulatedRig
 from tests.support.arms import make_arm
+from tools.support.simulated_rig import ROOM, SimulatedRig
 
 
 @pytest.fixture

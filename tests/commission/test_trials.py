@@ -18,7 +18,8 @@ from greywhale.files.trajectory import Trajectory
 from greywhale.loop.controllers import controllers_of
 from greywhale.measure.limits import SWING_LIMITS
 from greywhale.protocol.table import ParameterTable
-from tests.commission.simulated import KD, KI, KP, SimulatedRig
+from tests.commission.simulated import KD, KI, KP
+from tools.support.simulated_rig import SimulatedRig
 
 BETTER, WILD = 2.0, 40.0  # times the stiffness of before
 

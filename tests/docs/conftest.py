@@ -48,12 +48,13 @@ from greywhale_paper.request import Request
 from greywhale_sim import serve as bench_serve
 from greywhale_sim.lockstep import LockStepBench
 from greywhale_sim.words import lock_step
-from tests.commission.simulated import SimulatedRig, in_no_time
+from tests.commission.simulated import in_no_time
 from tests.docs.running import Once, run
 from tests.support.demo import in_this_process
 from tests.tune.models import write_model
 from tools import ROOT
 from tools.support.recordings import TABLES, random_arm, record, table_of
+from tools.support.simulated_rig import SimulatedRig
 
 IMAGE = ROOT / "firmware" / ".pio" / "build" / "megaatmega2560"
 LOGS = ("log1", "log2", "log3", "log", "before", "after")
