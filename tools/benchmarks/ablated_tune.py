@@ -97,7 +97,7 @@ def tuned(seed: int, kind: str, number: int, values: Mapping[str, Any], budget: 
     rest = [one for one in margins if one.scenario == AT_REST]
     return {
         "error": float(np.mean([np.log(one.after.total_mse / one.before.total_mse) for one in held_out])),
-        "worst joint": max(float(_ratios(one).max()) for one in held_out),
+        "worst joint": max(float(ratios_of(one).max()) for one in held_out),
         "ripple": float(np.log(max(one.ripple_v for one in rest))),
         "rattle": float(np.log(max(one.rattle_rad for one in margins if one.scenario == MOVING))),
         "unrest": float(sum(not one.holds for one in margins)),
@@ -110,7 +110,7 @@ def _judge(kind: str, number: int) -> tuple[ArmParameters, Margins]:
     return arm, Margins(arm, ParameterTable.defaults(), plant_row(arm)[None], threads=1)
 
 
-def _ratios(one: HeldOut) -> Floats:
+def ratios_of(one: HeldOut) -> Floats:
     """Logarithms of a joint's error after to before, of those that moved."""
     moved = one.mse_before > MOVED_RAD2
     ratios: Floats = np.log(one.mse_after[moved] / one.mse_before[moved])

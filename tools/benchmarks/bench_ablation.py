@@ -1,11 +1,11 @@
 """Screens the numbers by which a room judges, for those that change what it finds by more than chance does.
 
-GREYWHALE_ROOM says which room: tune, or identify. Three groups of runs an arm. In `numbers` every plain number is at
-half or twice its distance from where it would do nothing. In `rules` each rule that a number can switch off is on or
-off. In `chance` only the seed differs. Every run is judged on the true arm (MuJoCo's as our own engine has it), by
-motions that it has not seen. What is told from chance on one arm is left as usual on the next. Runs, effects and errors
-are left in build/ablation. GREYWHALE_ARMS names other arms, as for `commission`; GREYWHALE_GROUPS=rules leaves out the
-numbers; GREYWHALE_BUDGET is a tuning's budget (300).
+GREYWHALE_ROOM says which room: tune, identify, or commission. Three groups of runs an arm. In `numbers` every plain
+number is at half or twice its distance from where it would do nothing. In `rules` each rule that a number can switch
+off is on or off. In `chance` only the seed differs. Every run is judged on the true arm (MuJoCo's as our own engine has
+it), by motions that it has not seen. What is told from chance on one arm is left as usual on the next. Runs, effects
+and errors are left in build/ablation. GREYWHALE_ARMS names other arms, as for `commission`; GREYWHALE_GROUPS=rules
+leaves out the numbers; GREYWHALE_BUDGET is a tuning's budget (300).
 """
 
 from __future__ import annotations
@@ -19,13 +19,14 @@ import numpy as np
 
 from greywhale.base.study import Task
 from tools.benchmarks.ablated import FOLDER, Ablated
+from tools.benchmarks.ablated_commission import COMMISSION
 from tools.benchmarks.ablated_identify import IDENTIFY
 from tools.benchmarks.ablated_tune import TUNE
 from tools.benchmarks.figure import Figure
 from tools.benchmarks.study import repeat
 from tools.support.screening import Levels, effects, screen, standard_error
 
-ROOMS = {"tune": TUNE, "identify": IDENTIFY}
+ROOMS = {"tune": TUNE, "identify": IDENTIFY, "commission": COMMISSION}
 ROOM = os.environ.get("GREYWHALE_ROOM", "tune")
 ARMS = os.environ.get("GREYWHALE_ARMS", "default 1,worn 11,mujoco 2").split(",")
 CHOSEN = os.environ.get("GREYWHALE_GROUPS", "rules,numbers").split(",")
