@@ -40,7 +40,7 @@ def test_the_demo_tells_its_story_and_proves_its_controllers_on_the_arm(
     monkeypatch.setattr(story, "PROVING_TRIALS", 1)
     short = MotionLimits(
         reaches_s=2.0, hold_s=0.5, slow_s=1.0, pause_s=0.3, move_shares=(0.5,), rest_s=0.5,
-        small_rad=(0.1, 0.0), still_shares=(0.6, 0.0), still_hold_s=0.3,
+        small_rad=(0.1, 0.0), still_shares=(0.6, 0.0), still_s=0.3,
     )  # fmt: skip
     judging = CommissioningLimits(motion=short, search=SearchLimits(packs=((0.1, 12),), retry_error=1e9))
     monkeypatch.setattr("greywhale.commission.CommissioningRequest", partial(CommissioningRequest, judging=judging))

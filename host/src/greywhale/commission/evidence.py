@@ -74,18 +74,13 @@ def _plant_that_hunts(arm: ArmParameters, trial: Trial, joint: int, judging: Com
 
 
 def _variants(plant: Floats, joint: int, limits: EvidenceLimits) -> Floats:
-    """The model itself, then with more play, wider gaps (where its teeth are not rigid), lag and gain: (n, columns)."""
+    """The model itself, then with more play, then with wider gaps where its teeth are not rigid: (n, columns)."""
     rows = [plant]
-    gap, stiffness, gain = (column(name, joint) for name in ("half_gap", "stiffness", "torque_per_volt"))
-    toothed = ((gap, limits.gaps_rad),) if plant[stiffness] > 0.0 else ()
-    play, lag = (column("pot_play", joint), limits.gaps_rad), (column("pot_lag", joint), limits.lags_s)
-    for place, sizes in (play, *toothed, lag):
-        for more in sizes:
+    play, gap, stiffness = (column(name, joint) for name in ("pot_play", "half_gap", "stiffness"))
+    for place in (play, gap) if plant[stiffness] > 0.0 else (play,):
+        for more in limits.gaps_rad:
             rows.append(plant.copy())
             rows[-1][place] += more
-    for factor in limits.gains:
-        rows.append(plant.copy())
-        rows[-1][gain] *= factor
     return np.array(rows)
 
 

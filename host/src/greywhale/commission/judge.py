@@ -24,6 +24,7 @@ SLOW = PARTS.index("slow motion")
 # The parts whose error ranks controllers as a person's reaches do (docs/commission.md). In the others it has a limit.
 LED = [PARTS.index(name) for name in HAND_LED]
 RESTLESS = ("unrest", "rattle", "chatter", "ripple")
+LEAST_RAD2 = 1e-9  # keeps a division from 0
 
 
 @dataclass(frozen=True)
@@ -53,7 +54,7 @@ class Limits:
         them.
         """
         own, swings = judging.judge, judging.swings
-        error = (1.0 + np.where(kept, own.kept_share, swings.repeat_share)) * before.error + own.repeat_rad2
+        error = np.maximum((1.0 + np.where(kept, own.kept_share, swings.repeat_share)) * before.error, LEAST_RAD2)
         unseen_rad = np.full((len(PARTS), 1), own.unseen_rad)
         unseen_rad[PARTS.index(HOLDING)] = own.unseen_holding_rad
         unseen = np.maximum(error, (np.sqrt(before.error) + unseen_rad) ** 2)
@@ -143,9 +144,9 @@ def _judge(
     if foreseen:
         faults.append(foreseen)
     was, seen = before.error[LED], np.isfinite(measured.error[LED, joint])
-    shown = measured.error[LED, joint][seen].sum() / max(was[seen, joint].sum(), 1e-9)
+    shown = measured.error[LED, joint][seen].sum() / max(was[seen, joint].sum(), LEAST_RAD2)
     score = float(shown) if seen.any() else np.nan
-    share = float(was[:, joint].sum() / max(was.sum(), 1e-9))
+    share = float(was[:, joint].sum() / max(was.sum(), LEAST_RAD2))
     known = bool(seen.any() or faults)
     hardly = restless and len(faults) == 1 and excess <= judging.swings.bearable_excess
     priced = bool(seen.any()) and (hardly or not faults)

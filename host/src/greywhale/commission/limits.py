@@ -14,7 +14,6 @@ class MotionLimits:
     """The little first motion, and the five parts of the check."""
 
     speed_share: float = limit(0.9, "of what a host can lead", "no move is quicker: a tenth to spare")
-    edge_s: float = limit(0.04, "s", "a hand cannot jump")
     first_rad: float = limit(0.15, "rad", "the first motion is no larger")
     first_again_rad: float = limit(0.4, "rad", "the first motion once more, for joints that friction held")
     first_edge_s: float = limit(0.5, "s", "an edge of the first motion is slow")
@@ -42,8 +41,7 @@ class MotionLimits:
     still_shares: tuple[float, ...] = limit(
         (0.6, -0.5, 0.0), "of the room", "stops of every second joint while the others hold still"
     )
-    still_edge_s: float = limit(0.4, "s", "an edge of these moves")
-    still_hold_s: float = limit(0.4, "s", "a stop of these moves")
+    still_s: float = limit(0.4, "s", "an edge, and a stop, of these moves")
 
 
 @dataclass(frozen=True)
@@ -92,8 +90,6 @@ class EvidenceLimits:
         "rad to either side",
         "play or gaps that a model may lack; mildest first",
     )
-    lags_s: tuple[float, ...] = limit((1e-3, 2e-3, 4e-3), "s", "lag of a potentiometer that may be missing in it")
-    gains: tuple[float, ...] = limit((1.4, 2.0, 2.8), "times", "loop gain that may be missing in it")
     hunting_end_s: float = limit(0.8, "s", "the end of a log shows how a joint hunts")
     shown_share: float = limit(0.5, "of the measured unrest", "a plant shows the unrest from this on")
 
@@ -121,12 +117,6 @@ class JudgeLimits:
         2.0,
         "times the error",
         "price of swinging as much as can be borne",
-    )
-    repeat_rad2: float = limit(
-        1e-6,
-        "rad²",
-        "and by so much (1 mrad rms) recordings with the same controllers differ",
-        MEASURED_IN_TRIALS,
     )
     unseen_rad: float = limit(
         0.002,
@@ -167,11 +157,10 @@ class SearchLimits:
     worse_gain: float = limit(1.3, "times", "the worse arm has so much loop gain")
     worse_lag_s: float = limit(1e-3, "s", "the worse arm has so much more lag of the potentiometers")
     gear_sigmas: float = limit(1.0, "standard deviations", "the worse arm's gears are looser by so many")
-    unrest_aim: float = limit(0.7, "of the check's limit", "the unrest that a set on the model may show")
+    unrest_aim: float = limit(0.7, "of the check's limit", "the unrest, or chatter, that a set on the model may show")
     rattle_aim: float = limit(
         0.5, "of the check's limit", "the same of rattling: an arm rattles 1.1 to 2.0 times its model", MEASURED_ON_ARMS
     )
-    chatter_aim: float = limit(0.8, "of the check's limit", "the same of chatter")
     error_aim: float = limit(0.8, "of the check's limit", "the same of the error")
     before_aim: float = limit(
         0.95,

@@ -14,7 +14,7 @@ from greywhale.base.types import Floats
 from greywhale.commission.limits import COMMISSIONING_LIMITS, MotionLimits
 from greywhale.files.trajectory import Trajectory
 from greywhale.loop import human_reaches
-from greywhale.loop.leader_motions import RANGE_RAD, RATE_HZ, minimum_jerk, move_through
+from greywhale.loop.leader_motions import EDGE_S, RANGE_RAD, RATE_HZ, minimum_jerk, move_through
 from greywhale.protocol.firmware import FASTEST_LED_RAD_S, JOINTS
 
 REACHES_SEED = 3281  # in these each joint goes far; they judge nothing anywhere else
@@ -59,13 +59,13 @@ def check_motion(room: JointRange, limits: MotionLimits = COMMISSIONING_LIMITS.m
     turns = (_turned(number, limits.move_shares) for number in range(len(limits.move_shares)))
     moves = [room.pose, *(room.place(shares) for shares in turns), room.pose]
     hold, pause = limits.hold_s, limits.pause_s
-    still_holds = [0.1] + [limits.still_hold_s] * (2 * len(limits.still_shares) - 1) + [pause]
+    still_holds = [0.1] + [limits.still_s] * (2 * len(limits.still_shares) - 1) + [pause]
     pieces = (
-        _through(small, [pause] + [hold] * len(limits.small_rad), limits.edge_s, limits),
-        _through(moves, [0.1] + [hold] * (len(moves) - 2) + [limits.rest_s], limits.edge_s, limits),
+        _through(small, [pause] + [hold] * len(limits.small_rad), EDGE_S, limits),
+        _through(moves, [0.1] + [hold] * (len(moves) - 2) + [limits.rest_s], EDGE_S, limits),
         _reaches(room, limits),
         _slow(room, limits),
-        _through(_still(room, limits.still_shares), still_holds, limits.still_edge_s, limits),
+        _through(_still(room, limits.still_shares), still_holds, limits.still_s, limits),
     )
     time_s, angles = [pieces[0].time_s[:1]], [pieces[0].angles[:1]]
     parts: dict[str, tuple[float, float]] = {}

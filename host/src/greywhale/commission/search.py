@@ -27,7 +27,7 @@ from greywhale.arm.plants import plant_row
 from greywhale.base.types import Controllers, Flags, Floats, NotedProgress
 from greywhale.commission.evidence import failing_plants
 from greywhale.commission.foresee import Foresight
-from greywhale.commission.judge import LED, RESTLESS, Limits
+from greywhale.commission.judge import LEAST_RAD2, LED, RESTLESS, Limits
 from greywhale.commission.limits import SearchLimits
 from greywhale.commission.measures import Measures, measure
 from greywhale.commission.trials import Trial, Trials
@@ -46,7 +46,6 @@ from greywhale.tune.search.space import Space
 
 NONE = np.zeros(JOINTS, dtype=bool)
 NO_LIMIT_V = np.full(JOINTS, np.inf)  # of ripple in the margins' rests: the check's is limited
-LEAST_RAD2 = 1e-9  # keeps a division from 0
 KP, KD, KI, KU, CE_TICKS = (CONTROLLER_COLUMNS.index(name) for name in ("kp", "kd", "ki", "ku_mv", "ce_ticks"))
 GAINS = [KP, KD, KI, KU]
 
@@ -94,7 +93,7 @@ class CheckOnModel:
             aims=Limits(
                 unrest=wanted.unrest_aim * limits.unrest,
                 rattle=wanted.rattle_aim * limits.rattle,
-                chatter=wanted.chatter_aim * limits.chatter,
+                chatter=wanted.unrest_aim * limits.chatter,
                 ripple=np.fmax(wanted.before_aim * known.ripple, wanted.host_ripple_share * quiet_v),
                 error=wanted.error_aim * own.error,
             ),
