@@ -384,10 +384,10 @@ class Adaptation:
     @property
     def _is_fresh(self) -> bool:
         """True where the model knows the arm as it was just now."""
-        return self._age <= self._decisions.fit_valid_s
+        return self._age <= self._decisions.fit_s
 
     def _swings_of(self, stretches: Sequence[Stretch]) -> Swings | None:
-        return Swings.of(stretches, self.kept.supply_v, self._limits.samples)
+        return Swings.of(stretches, self.kept.supply_v, self._limits)
 
 
 def _lower(ratio: float) -> str:

@@ -37,7 +37,6 @@ class SampleLimits:
     """Limits of a stretch of samples, and of a record of stretches."""
 
     max_lost_samples: int = limit(20, "samples", "a longer gap ends the stretch")
-    hand_still_rad: float = limit(0.02, "rad", "the leader rests within this: a hand trembles")
     least_swing_record_s: int = limit(4, "s", "shorter records say little about swings")
 
 
@@ -105,9 +104,8 @@ class DecisionLimits:
         "s",
         "before the judged stretch: an integral takes time to build up",
     )
-    fit_s: int = limit(12, "s", "the model is fitted to so much while another set runs")
+    fit_s: int = limit(12, "s", "the model is fitted to so much while another set runs; a verdict needs one no older")
     refit_every_s: int = limit(8, "s", "it is fitted anew so often then")
-    fit_valid_s: int = limit(12, "s", "a verdict needs a model as new as this")
     max_trial_s: int = limit(60, "s", "a trial that says nothing by then ends")
     trial_swings_s: int = limit(20, "s", "so much of a trial is looked at for swings")
     window_s: int = limit(30, "s", "an excess counts over this time, half a minute")

@@ -14,7 +14,7 @@ import numpy as np
 import scipy.ndimage  # both are loaded before an arm is led, since to load one takes
 import scipy.signal  # noqa: F401 # longer than the arm's lease on a small computer
 
-from greywhale.adapt.limits import ADAPTATION_LIMITS, SampleLimits
+from greywhale.adapt.limits import ADAPTATION_LIMITS, AdaptationLimits
 from greywhale.adapt.stretch import Stretch, chains_of, traces_of
 from greywhale.base.types import Floats
 from greywhale.measure.limits import SWING_LIMITS, AllowedSwings, SwingLimits
@@ -32,13 +32,13 @@ class Swings:
 
     @classmethod
     def of(
-        cls, stretches: Sequence[Stretch], supply_v: float, limits: SampleLimits = ADAPTATION_LIMITS.samples
+        cls, stretches: Sequence[Stretch], supply_v: float, limits: AdaptationLimits = ADAPTATION_LIMITS
     ) -> Self | None:
         """Measured over the longest part without a gap; None where that is too short."""
         chain = max(chains_of(stretches), key=len, default=[])
-        if len(chain) < limits.least_swing_record_s:
+        if len(chain) < limits.samples.least_swing_record_s:
             return None
-        traces, still = traces_of(chain), limits.hand_still_rad
+        traces, still = traces_of(chain), limits.changes.still_rad
         return cls(
             unrest=_beyond(*(unrest(traces.leader, path, still) for path in (traces.follower, traces.leader))),
             rattle=rattle_of_record(traces.leader, traces.follower),
