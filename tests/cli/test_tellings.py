@@ -11,6 +11,7 @@ from greywhale.cli import entry
 from greywhale.cli.catalogue import catalogue
 from greywhale.dashboard.folder import Folder
 from greywhale.dashboard.verbs import command_line
+from greywhale.protocol.table import ParameterTable
 from tests.cli.example_log import write_log
 from tests.cli.test_wrapping import seen_on
 from tests.support.tellings import told_by_verbs, words, words_in
@@ -31,7 +32,7 @@ def test_each_next_step_is_a_verb_of_the_page_with_arguments_that_it_takes(
 ) -> None:
     known = {one["verb"]: one for one in catalogue()}
     steps = {verb: [step.verb for step in telling.steps] for verb, (telling, _) in told_by_verbs.items()}
-    assert steps["record"] == ["identify", "evaluate"]
+    assert steps["record"] == ["evaluate"]
     assert steps["identify"] == ["tune", "record"]
     assert steps["tune"] == ["upload", "commission"]
     assert told_by_verbs["commission"][0].steps[0].given == {"model": "model.toml"}
@@ -51,6 +52,10 @@ def test_a_terminal_gets_the_next_step_and_a_pipe_the_result_alone(
     piped = capsys.readouterr().out
     said = seen_on(100, monkeypatch, "stdout", ["evaluate", "a log.csv"])
     assert said == f"{piped}Next: greywhale identify 'a log.csv'\n"
+    shipped = ParameterTable.defaults()
+    for table, offered in ((shipped, True), (shipped.with_raw({"joint2.kp": shipped["joint2.kp"] + 1}), False)):
+        write_log(Path("ran.csv"), table=table)
+        assert ("Next: " in seen_on(100, monkeypatch, "stdout", ["evaluate", "ran.csv"])) is offered
 
 
 def test_a_row_keeps_its_columns_and_its_words_where_a_cell_is_too_long() -> None:

@@ -186,9 +186,14 @@ Answer match(Given given) {
 Answer slipped(Given given) {
   const double *before = given.some(kPots), *after = given.some(kPots);
   std::string moved;
+  bool named[kPots / kJoints] = {};  // an arm is, and counts are, once: eight full names fill nine lines of a terminal
   for (std::size_t pot = 0; pot < kPots; ++pot) {
     const double apart = std::abs(after[pot] - before[pot]);
-    if (apart > kSlippedCounts) moved += (moved.empty() ? "" : ", ") + pot_name(pot) + text(" (by %.0f counts)", apart);
+    if (apart <= kSlippedCounts) continue;
+    bool& arm = named[pot / kJoints];
+    moved += (moved.empty() ? "" : ", ") + (arm ? text("%d", whole(pot % kJoints)) : pot_name(pot)) +
+             text(moved.empty() ? " (by %.0f counts)" : " (%.0f)", apart);
+    arm = true;
   }
   Answer answer;
   if (!moved.empty())

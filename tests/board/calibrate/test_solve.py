@@ -99,6 +99,9 @@ def test_the_same_pose_twice_shows_what_slipped() -> None:
     again[1] += 9.0
     assert "first pose: leader potentiometer 1 (by 9 counts); " in slipped(first, Pose(FIRST, again))
     assert slipped(first, Pose(FIRST, first.counts + 7.0)) == ""
+    everywhere = slipped(first, Pose(FIRST, first.counts + 1000.0))
+    assert "leader potentiometer 0 (by 1000 counts), 1 (1000), " in everywhere
+    assert ", follower potentiometer 0 (1000), 1 (1000), 2 (1000), 3 (1000); " in everywhere
 
 
 def test_limits_keep_within_what_the_firmware_takes() -> None:

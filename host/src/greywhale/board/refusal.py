@@ -20,7 +20,7 @@ class RefusedError(UserError):
             remedy = schema.LeadRefusal.of(nack.detail & 0xFF).remedy or remedy
         where = f" ({detail})" if detail else ""
         super().__init__(
-            f"{port}: the board refused the request '{request}': {nack.code.description}{where}: {lower_first(remedy)}"
+            f"{port}: the board refused the request '{request}': {nack.code.description}{where}: {_typed(remedy)}"
         )
 
 
@@ -63,7 +63,12 @@ def fault_text(status: schema.StatusReply) -> str:
     if where != 0xFF:
         pots = (schema.Fault.POT_LOW, schema.Fault.POT_HIGH, schema.Fault.LEADER_JUMP)
         place = f" ({pot_name(where)})" if fault in pots else f" (joint {where})"
-    return f"{fault.description}{place}: {lower_first(fault.remedy)}"
+    return f"{fault.description}{place}: {_typed(fault.remedy)}"
+
+
+def _typed(remedy: str) -> str:
+    """The remedy within a sentence for a terminal, where nobody sees the page's button to clear a fault."""
+    return lower_first(remedy).replace("lear the fault", "lear the fault (`greywhale stop --clear-fault`)", 1)
 
 
 def upper_first(text: str) -> str:

@@ -26,6 +26,7 @@ from greywhale.observe import ExternalTorque, estimate_external_torque
 from greywhale.observe.torque import TorqueFacts
 from greywhale.pictures.kinds import kind_of
 from greywhale.protocol.joints import named, unused
+from greywhale.protocol.table import ParameterTable
 
 # They stand within 80 columns.
 _COLUMNS = (
@@ -142,7 +143,7 @@ def command(
         _draw(picture, read, evaluations)
         answer["picture"] = str(picture)
         parts.append(Sentences([f"Picture: {picture}"]))
-    followed = [log.name for log, evaluation in zip(read, evaluations, strict=True) if evaluation.following]
+    followed = [log.name for log, one in zip(read, evaluations, strict=True) if one.following and not _is_tuned(log)]
     steps = [Step("identify", "Find the arm that made this", {"logs": followed})] if followed else []
     show(as_json, answer, Telling(parts, steps))
 
@@ -162,6 +163,11 @@ def _measure_visits(logs: tuple[Path, ...], picture: Path | None, arm_file: str 
         answer["picture"] = str(picture)
         parts.append(Sentences([f"Picture: {picture}"]))
     show(as_json, answer, Telling(parts))
+
+
+def _is_tuned(log: Log) -> bool:
+    """True where other controllers ran than a board's as it is shipped: then a model was found before."""
+    return log.origin.table is not None and log.origin.table.controllers != ParameterTable.defaults().controllers
 
 
 def _remarks(log: Log) -> list[str]:

@@ -242,7 +242,7 @@ def command(
         show(as_json, result, tell_visits(chosen, recording, designed))
     else:
         result = {"port": device.port, **recording.as_dict(), "design": _facts(designed), **saved}
-        show(as_json, result, tell_recording(chosen, recording, designed.text()))
+        show(as_json, result, tell_recording(chosen, recording, designed))
 
 
 def _record_episodes(plan: EpisodePlan, port: str | None, as_json: bool) -> None:
@@ -338,15 +338,14 @@ def _naming_every() -> Iterator[None]:
         raise
 
 
-def tell_recording(port: str, recording: Recording, *more: str, followed: bool = True) -> Telling:
-    """A recording in sentences and as a picture; only one that followed tells about the arm."""
+def tell_recording(port: str, recording: Recording, designed: Design | None = None, followed: bool = True) -> Telling:
+    """A recording in sentences and as a picture; only one that followed tells about the arm, best a designed one."""
     log = str(recording.path)
-    steps = [
-        Step("identify", "Find the arm that made this log", {"logs": [log]}),
-        Step("evaluate", "Measure how well it followed", {"logs": [log]}),
-    ]
-    parts = (Sentences((describe(port, recording), *more)), Motions({"follower": log}))
-    return Telling(parts, steps if followed else ())
+    find = Step("identify", "Find the arm that made this log", {"logs": [log]})
+    measure = Step("evaluate", "Measure how well it followed", {"logs": [log]})
+    said = [describe(port, recording), *([] if designed is None else [designed.text()])]
+    parts = (Sentences(said), Motions({"follower": log}))
+    return Telling(parts, [*([] if designed is None else [find]), *([measure] if followed else [])])
 
 
 def tell_episodes(port: str, made: Episodes, followed: bool) -> Telling:
