@@ -15,6 +15,8 @@ import pytest
 from greywhale.base.errors import INTERRUPTED, UserError
 from greywhale.base.telling import Telling
 from greywhale.cli import countdown, entry, output
+from greywhale.files.arm import default_arm
+from greywhale.files.model import to_toml
 from greywhale.protocol import schema
 from greywhale.protocol.ports import Port
 from tests.board.port_board import PortBoard
@@ -130,3 +132,19 @@ def test_who_stops_the_count_on_a_page_has_moved_nothing(
         assert entry.run([*verb, "--port", board.port]) == INTERRUPTED
         assert [board.asked(start) for start in STARTS] == [0, 0]
     assert page.told == [*range(3, stops - 1, -1), 0]
+
+
+def test_an_arm_file_of_another_board_is_doubted_before_the_arm_moves(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The model of the log would be refused for it, minutes later."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(output, "watcher", Counted(3))
+    arm = default_arm()
+    other = arm.model_copy(update={"drive": arm.drive.model_copy(update={"supply": 12.0})})
+    Path("other.toml").write_text(to_toml(other, {}).replace("[identification]\n", ""), encoding="utf-8")
+    excite = ["record", "--excite", "--budget", "1", "--arm", "other.toml"]
+    with PortBoard() as board:
+        assert entry.run([*excite, "--port", board.port]) == INTERRUPTED
+    said = capsys.readouterr().err
+    assert "Warning: other.toml: its drive.supply is 12 V, but the board's supply_mv says 15 V; " in said

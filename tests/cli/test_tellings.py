@@ -53,9 +53,10 @@ def test_a_terminal_gets_the_next_step_and_a_pipe_the_result_alone(
     said = seen_on(100, monkeypatch, "stdout", ["evaluate", "a log.csv"])
     assert said == f"{piped}Next: greywhale identify 'a log.csv'\n"
     shipped = ParameterTable.defaults()
-    for table, offered in ((shipped, True), (shipped.with_raw({"joint2.kp": shipped["joint2.kp"] + 1}), False)):
-        write_log(Path("ran.csv"), table=table)
-        assert ("Next: " in seen_on(100, monkeypatch, "stdout", ["evaluate", "ran.csv"])) is offered
+    write_log(Path("before.csv"), table=shipped)
+    write_log(Path("after.csv"), table=shipped.with_raw({"joint2.kp": shipped["joint2.kp"] + 1}))
+    for logs, offered in ((["before.csv"], True), (["after.csv"], False), (["before.csv", "after.csv"], False)):
+        assert ("Next: " in seen_on(100, monkeypatch, "stdout", ["evaluate", *logs])) is offered
 
 
 def test_a_row_keeps_its_columns_and_its_words_where_a_cell_is_too_long() -> None:

@@ -15,7 +15,7 @@ from greywhale.protocol.transport import PortDisturbedError, PortLostError
 from tests.commission.simulated import in_no_time
 from tools.support.simulated_rig import SimulatedRig
 
-GOES_ON = "The same command with --resume goes on in {}."
+GOES_ON = "The same command with --resume goes on in the folder {}."
 
 
 @pytest.fixture(autouse=True)

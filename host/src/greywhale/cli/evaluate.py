@@ -143,8 +143,9 @@ def command(
         _draw(picture, read, evaluations)
         answer["picture"] = str(picture)
         parts.append(Sentences([f"Picture: {picture}"]))
-    followed = [log.name for log, one in zip(read, evaluations, strict=True) if one.following and not _is_tuned(log)]
-    steps = [Step("identify", "Find the arm that made this", {"logs": followed})] if followed else []
+    followed = [log for log, evaluation in zip(read, evaluations, strict=True) if evaluation.following]
+    find = Step("identify", "Find the arm that made this", {"logs": [log.name for log in followed]})
+    steps = [find] if followed and not any(map(_is_tuned, followed)) else []
     show(as_json, answer, Telling(parts, steps))
 
 

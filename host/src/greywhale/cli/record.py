@@ -34,7 +34,7 @@ from greywhale.board.upload import read_parameters
 from greywhale.cli import completion
 from greywhale.cli.countdown import prepare_motion, warn_page, yes_option
 from greywhale.cli.keys import person_at_hand
-from greywhale.cli.output import FILE, OnPort, json_option, option, overwrite_option, port_option, progress, show
+from greywhale.cli.output import FILE, OnPort, json_option, option, overwrite_option, port_option, progress, show, warn
 from greywhale.files.leader import save_leader
 from greywhale.files.outputs import require_folder, require_new
 from greywhale.files.trajectory import Trajectory
@@ -224,15 +224,17 @@ def command(
         raise BadUsage(f"{out}: the log and the motion cannot be one file; give --save-motion another.")
     plan = _plan_poses(arm_file, ranges, seconds, poses) if poses else _plan(arm_file, ranges, seconds, seed, budget)
     chosen = choose_port(port)
-    warn = prepare_motion(chosen, yes)
+    count_down = prepare_motion(chosen, yes)
     with Device(chosen) as device:
         with progress() as report:
             running = read_parameters(device, report)
             require_good_pots(device, running, FOLLOWERS)
+            if arm_file is not None:
+                _doubt(arm_file, running)
             designed = plan(pose_of(device), table=running, report=report)
         if save_motion is not None:
             save_leader(save_motion, designed.motion)
-        warn()
+        count_down()
         with progress() as report:
             recording = record_led(device, out, designed.motion, every, report, running)
     saved: Saved = {} if save_motion is None else {"motion": str(save_motion)}
@@ -242,7 +244,15 @@ def command(
         show(as_json, result, tell_visits(chosen, recording, designed))
     else:
         result = {"port": device.port, **recording.as_dict(), "design": _facts(designed), **saved}
-        show(as_json, result, tell_recording(chosen, recording, designed))
+        show(as_json, result, tell_designed(chosen, recording, designed, arm_file))
+
+
+def _doubt(arm_file: str, table: ParameterTable) -> None:
+    """Say now what would be refused when the model of this log is tuned on."""
+    from greywhale.files.arm import load_arm
+    from greywhale.tune.model_checks import doubt_other_board
+
+    warn(f"{arm_file}: {one.reason}; {one.remedy}." for one in doubt_other_board(load_arm(arm_file), None, table))
 
 
 def _record_episodes(plan: EpisodePlan, port: str | None, as_json: bool) -> None:
@@ -338,14 +348,22 @@ def _naming_every() -> Iterator[None]:
         raise
 
 
-def tell_recording(port: str, recording: Recording, designed: Design | None = None, followed: bool = True) -> Telling:
-    """A recording in sentences and as a picture; only one that followed tells about the arm, best a designed one."""
+def tell_recording(port: str, recording: Recording, followed: bool = True) -> Telling:
+    """A recording in sentences and as a picture; only one that followed tells about the arm."""
     log = str(recording.path)
-    find = Step("identify", "Find the arm that made this log", {"logs": [log]})
-    measure = Step("evaluate", "Measure how well it followed", {"logs": [log]})
-    said = [describe(port, recording), *([] if designed is None else [designed.text()])]
-    parts = (Sentences(said), Motions({"follower": log}))
-    return Telling(parts, [*([] if designed is None else [find]), *([measure] if followed else [])])
+    step = Step("evaluate", "Measure how well it followed", {"logs": [log]})
+    return Telling(_told(port, recording), [step] if followed else [])
+
+
+def tell_designed(port: str, recording: Recording, designed: Design, arm_file: str | None) -> Telling:
+    """A recording of the motion that shows most about the arm of a file."""
+    of_arm = {} if arm_file is None else {"arm_file": arm_file}
+    step = Step("identify", "Find the arm that made this log", {"logs": [str(recording.path)], **of_arm})
+    return Telling(_told(port, recording, designed.text()), [step])
+
+
+def _told(port: str, recording: Recording, *more: str) -> tuple[Sentences, Motions]:
+    return Sentences((describe(port, recording), *more)), Motions({"follower": str(recording.path)})
 
 
 def tell_episodes(port: str, made: Episodes, followed: bool) -> Telling:
@@ -360,11 +378,9 @@ def tell_episodes(port: str, made: Episodes, followed: bool) -> Telling:
 
 def tell_visits(port: str, recording: Recording, made: Visits) -> Telling:
     """A recording of visits, which shows how exactly the arm comes back."""
-    log = str(recording.path)
     said = f"Each of five poses was visited {counted(made.visits, 'time')} from below and from above."
-    parts = (Sentences((describe(port, recording), said)), Motions({"follower": log}))
-    step = Step("evaluate", "Measure how exactly it came back", {"logs": [log], "repeatability": True})
-    return Telling(parts, [step])
+    given = {"logs": [str(recording.path)], "repeatability": True}
+    return Telling(_told(port, recording, said), [Step("evaluate", "Measure how exactly it came back", given)])
 
 
 def describe(port: str, recording: Recording) -> str:

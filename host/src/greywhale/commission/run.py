@@ -114,7 +114,7 @@ class _Commissioning:
                 raise
 
     def _say_how_to_go_on(self, ending: UserError | KeyboardInterrupt) -> None:
-        again = f"The same command with --resume goes on in {self.options.out}."
+        again = f"The same command with --resume goes on in the folder {self.options.out}."
         if isinstance(ending, KeyboardInterrupt):
             ending.add_note(f"The board keeps the controllers from before. {again}")
         elif not isinstance(ending, AnewError | BadUsage) and "--resume" not in ending.message:

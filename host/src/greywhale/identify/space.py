@@ -53,7 +53,7 @@ KINDS = {
     "breakaway": Kind(
         "", "excess of friction at rest over sliding friction, a share of it", False, 0.2, 0.0, 0.5, 1e-2, 1.0
     ),
-    "stribeck": Kind("rad/s", "speed at which that excess has halved", True, 0.1, 0.1, 5.0, 1e-2, 1.0),
+    "stribeck": Kind("rad/s", "speed at which the extra friction at rest has halved", True, 0.1, 0.1, 5.0, 1e-2, 1.0),
     "gap": Kind("rad", "half of the backlash, at the joint", False, 2e-3, 0.0, 0.03, 1e-4, 1e-2),
     "drag": Kind("", "drag of the grease between the teeth, a share of the damping", True, 0.1, 1e-2, 10.0, 1e-2, 1.5),
     "teeth": Kind("rad", "bend of the teeth at the motor's stall torque", True, 1e-2, 3e-2, 1e3, 2e-2, 1.5),

@@ -124,9 +124,9 @@ class Design:
         motors = [float(deviation) for one, deviation in rows if one.kind in (*MOTOR, "coulomb")]
         left = self.left_open()
         return (
-            f"Sensor noise alone leaves motors and friction known to {100 * float(np.median(motors)):.2g} % after this "
-            f"motion, the worst of them to {100 * max(motors):.2g} %"
-            + (f"; it hardly tells {', '.join(left)}" if left else "")
+            f"As far as sensor noise goes, this motion tells half of the numbers of motors and friction to "
+            f"{100 * float(np.median(motors)):.2g} % or better, the worst to {100 * max(motors):.2g} %"
+            + (f"; it hardly tells {', '.join(left)} (`greywhale identify` says what these are)" if left else "")
             + "."
         )
 
