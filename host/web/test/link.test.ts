@@ -100,7 +100,7 @@ test("replies find their request in any order, and a refusal is one sentence", a
   client.receive(encodeFrame(schema.ParamGetReply.type, two!, schema.ParamGetReply.pack({ index: 4, value: -9 })));
   client.receive(encodeFrame(schema.ParamGetReply.type, one!, schema.ParamGetReply.pack({ index: 3, value: 7 })));
   assert.deepEqual([(await first).value, (await second).value], [7, -9]);
-  await assert.rejects(third, /refused enable: .*\(joint 2, 2\.00 rad\): move the leader/);
+  await assert.rejects(third, /refused "enable": .*\(joint 2, 2\.00 rad\): move the leader/);
 });
 
 test("a fault names the potentiometer or the joint, as the kind of fault has it", () => {

@@ -4,6 +4,7 @@ import { test } from "node:test";
 import type { Board, BoardListener } from "../src/session/board";
 import { encodeFrame, FrameDecoder } from "../src/link/frames";
 import {
+  ClearFaultReply, ClearFaultRequest, Nack, NackCode,
   EnableReply, EnableRequest, HelloReply, HelloRequest, ParamGetReply, ParamGetRequest, SCHEMA_HASH, State, StatusReply, StatusRequest, StopReason, StopReply, StopRequest, TABLE,
   TelemetryReply, TelemetryRequest,
 } from "../src/link/schema";
@@ -120,6 +121,33 @@ test("motors that their lease turns off are told of, and no notice says that the
   session.tell("The log begins later.");
   [state, stop_reason] = [State.is.disabled, StopReason.is.host];
   assert.equal(await look(), "The log begins later.");
+});
+
+test("a refusal is taken back once the board does what it refused", async ({ mock }) => {
+  mock.timers.enable({ apis: ["setInterval", "setTimeout"] });
+  let mended = false;
+  let heard!: BoardListener;
+  const session = new Session({
+    listen: (listener) => { heard = listener; },
+    send: (frame) => new FrameDecoder().feed(frame, ({ type, seq }) => {
+      const refused = type === ClearFaultRequest.type && !mended;
+      const nack = Nack.pack({ request: type, code: NackCode.is.pot_bad, detail: 0x0500 });
+      const reply = refused ? nack : zeros(type === StatusRequest.type ? StatusReply.size : ClearFaultReply.size);
+      queueMicrotask(() => heard.bytes(encodeFrame(refused ? Nack.type : type | 0x80, seq, reply)));
+    }),
+    drive: () => undefined, release: () => undefined, history: () => Promise.resolve(zeros(0)),
+  });
+  heard.driver({ you: true, free: false, verb: null });
+  session.link = { open: true, port: "here", sentence: "" };
+  const clear = async (): Promise<string> => {
+    await session.attempt(() => session.clearFault());
+    return session.notice?.sentence ?? "";
+  };
+  assert.match(await clear(), /^The board refused "clear fault": .*\(follower potentiometer 1\)/);
+  mended = true;
+  assert.equal(await clear(), "");
+  session.tell("The log begins later.");
+  assert.equal(await clear(), "The log begins later.");
 });
 
 test("what was told of the link is taken back when it holds no more, and nothing else is", ({ mock }) => {

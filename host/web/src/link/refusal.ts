@@ -12,7 +12,7 @@ export function refusalSentence(request: string, nack: Nack): string {
   if (nack.code === NackCode.is.set_refused) remedy = Refusal.of(low).remedy;
   if (nack.code === NackCode.is.lead_refused) remedy = LeadRefusal.of(low).remedy;
   const detail = detailText(nack);
-  return `The board refused ${request}: ${code.description}${detail && ` (${detail})`}: ${lowerFirst(remedy)}`;
+  return `The board refused "${request.replaceAll("_", " ")}": ${code.description}${detail && ` (${detail})`}: ${lowerFirst(remedy)}`;
 }
 
 function detailText({ code, detail }: Nack): string {

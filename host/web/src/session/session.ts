@@ -45,6 +45,7 @@ export class Session {
   /** The motors that this page has enabled: asked for, seen on, or none. */
   private own: "asked" | "on" | "" = "";
   private toldOff = ""; // the sentence that told that the motors are off
+  private refused = ""; // the sentence of the last request that the board refused
   private reading: Promise<readonly number[]> | null = null;
   private readonly intake: Intake;
 
@@ -122,6 +123,11 @@ export class Session {
     this.tell(sentence, kind);
   }
 
+  /** Takes back what held until now: that the motors are off, or why the board refused something. */
+  private mended(): void {
+    if (this.notice && [this.toldOff, this.refused].includes(this.notice.sentence)) this.withdraw();
+  }
+
   /** Takes a notice back that holds no more. */
   private withdraw(): void {
     this.notice = null;
@@ -134,7 +140,9 @@ export class Session {
       await act();
       return true;
     } catch (error) {
-      this.tell(sentenceOf(error));
+      const sentence = sentenceOf(error);
+      if (error instanceof RefusedError) this.refused = sentence;
+      this.tell(sentence);
       return false;
     }
   }
@@ -185,7 +193,7 @@ export class Session {
     this.mustDrive();
     await this.client.ask(EnableRequest, { lease_ms: LEASE_MS });
     this.own = "asked";
-    if (this.notice?.sentence === this.toldOff) this.withdraw();
+    this.mended();
     await this.askStatus();
   }
 
@@ -227,6 +235,7 @@ export class Session {
 
   async clearFault(): Promise<void> {
     await this.client.ask(ClearFaultRequest, {});
+    this.mended();
     await this.askStatus();
   }
 

@@ -35,7 +35,7 @@ const BREAK: Words = {
   hint: "The wire to the wiper of the follower's shoulder potentiometer comes off.",
   act: "Break the wire",
   back: "Mend it and go on",
-  happened: "Without its wire the input reads 0 V, which no joint within its stops gives, so within three milliseconds the board turned all motors off; the line above the arm names the potentiometer. It stays off until the wire is mended and somebody enables it again.",
+  happened: "Without its wire the input reads 0 V, which no joint within its stops gives, so within three milliseconds the board turns all motors off, and a line above the arm names the potentiometer. They stay off until the wire is mended and somebody enables them again.",
   more: ["firmware.html#potentiometers-at-a-rail", "Potentiometers at a rail"],
 };
 const TUNE: Words = {
