@@ -155,7 +155,8 @@ def test_refusals_say_what_where_and_the_remedy(code: NackCode, detail: int, wor
     remedy = Refusal.WIDTH.remedy if code is NackCode.SET_REFUSED else code.remedy
     assert caught.value.message.startswith(f"{board.port}: the board refused the request 'enable': {code.description}")
     assert words in caught.value.message
-    assert remedy[1:] in caught.value.message
+    by_verb = remedy.replace("clear the fault", "clear the fault (`greywhale stop --clear-fault`)")
+    assert by_verb[1:] in caught.value.message
 
 
 def test_leaving_stops_motors_that_an_error_left_on() -> None:

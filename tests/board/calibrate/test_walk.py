@@ -223,7 +223,7 @@ def test_a_pose_that_contradicts_what_was_before_comes_again_for_a_person(patien
     if patient:
         way.go()
         assert "leader potentiometer 0 (by " in script.told[-2]
-        assert "follower potentiometer 0 (by " in script.told[-2]
+        assert ", follower potentiometer 0 (" in script.told[-2]
         assert "leader and follower differ by 0.50 rad at joint 0" in script.told[-1]
         assert all(told.endswith("This pose comes again; b goes back to an earlier step.") for told in script.told[-2:])
     else:
