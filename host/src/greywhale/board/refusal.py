@@ -19,8 +19,9 @@ class RefusedError(UserError):
         if nack.code is schema.NackCode.LEAD_REFUSED:
             remedy = schema.LeadRefusal.of(nack.detail & 0xFF).remedy or remedy
         where = f" ({detail})" if detail else ""
+        asked = request.replace("_", " ")
         super().__init__(
-            f"{port}: the board refused the request '{request}': {nack.code.description}{where}: {_typed(remedy)}"
+            f"{port}: the board refused the request '{asked}': {nack.code.description}{where}: {_typed(remedy)}"
         )
 
 
