@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 from greywhale.base.errors import UserError
 from greywhale.protocol import schema
 
@@ -69,7 +71,7 @@ def fault_text(status: schema.StatusReply) -> str:
 
 def _typed(remedy: str) -> str:
     """The remedy within a sentence for a terminal, where nobody sees the page's button to clear a fault."""
-    return lower_first(remedy).replace("lear the fault", "lear the fault (`greywhale stop --clear-fault`)", 1)
+    return re.sub("(?i)clear the fault", r"\g<0> (`greywhale stop --clear-fault`)", lower_first(remedy), count=1)
 
 
 def upper_first(text: str) -> str:
