@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from greywhale_paper.optimisers.significance import fewest
 from greywhale_paper.pages.claims import judge
 
 
@@ -18,4 +19,4 @@ from greywhale_paper.pages.claims import judge
     ],
 )
 def test_a_claim_needs_both_arms_and_enough_seeds(default: bool, sticky: bool, seeds: int, said: str) -> None:
-    assert judge(default, sticky, seeds) == said
+    assert judge(default, sticky, seeds, fewest()) == said

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from greywhale_paper.optimisers.significance import against, against_each, holm, mean_ranks
+from greywhale_paper.optimisers.significance import against, against_each, fewest, holm, mean_ranks
 
 
 def test_holm_multiplies_by_what_is_left_and_never_falls() -> None:
@@ -37,3 +37,14 @@ def test_more_questions_make_each_answer_less_sure() -> None:
 
 def test_ranks_are_means_over_runs_with_ties_shared() -> None:
     assert mean_ranks({"a": [1.0, 5.0], "b": [2.0, 5.0], "c": [3.0, 1.0]}) == {"a": 1.75, "b": 2.25, "c": 2.0}
+
+
+@pytest.mark.parametrize("questions", [1, 3, 6, 8])
+def test_with_fewer_runs_than_the_fewest_no_pair_is_told_apart_however_far(questions: int) -> None:
+    def words(runs: int) -> set[str]:
+        costs = {"own": [float(run) for run in range(runs)]}
+        costs |= {f"rival {number}": [1000.0 + number + run for run in range(runs)] for number in range(questions)}
+        return {one.word for one in against(costs, "own").values()}
+
+    assert words(fewest(questions)) == {"lower"}
+    assert words(fewest(questions) - 1) == {"not told apart"}

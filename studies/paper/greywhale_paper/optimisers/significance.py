@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from itertools import count
+from math import comb
 
 import numpy as np
 from scipy.stats import mannwhitneyu, rankdata
@@ -12,8 +14,6 @@ from greywhale.base.types import Floats
 
 # Two samples count as different when chance would separate them as far in fewer cases than this share.
 SIGNIFICANCE = 0.05
-# With fewer runs no difference can be significant.
-FEWEST = 4
 
 
 @dataclass(frozen=True)
@@ -25,6 +25,11 @@ class Verdict:
 
     def __str__(self) -> str:
         return f"{self.word}, p = {self.chance:.2g}"
+
+
+def fewest(questions: int = 1) -> int:
+    """The fewest runs of each method with which one of so many pairs can be told apart, however far they are apart."""
+    return next(runs for runs in count(1) if questions * 2.0 / comb(2 * runs, runs) < SIGNIFICANCE)
 
 
 def against(costs: Mapping[str, Sequence[float] | Floats], method: str) -> dict[str, Verdict]:

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from greywhale.tune.report.tables import PAPER_DELAY
-from greywhale_paper.optimisers.significance import FEWEST, Verdict, against_each
+from greywhale_paper.optimisers.significance import Verdict, against_each, fewest
 from greywhale_paper.pages import identified, readings
 from greywhale_paper.pages.document import Chapter, Entry, Row, Sheet, Status
 from greywhale_paper.pages.experiment import changes, columns_of
@@ -70,20 +70,20 @@ def table(found: Found) -> Sheet:
         notes=(
             f"Median (lowest to highest) of {found.seeds.split(' (')[0].removeprefix('median of ')}; negative: "
             f"worse. A figure is reached where a median is at least {NEAR:g} of the printed one. {YES}: on both "
-            f"arms; no verdict below {FEWEST} seeds. The first pack is random, or started with "
+            f"arms; no verdict below {fewest()} seeds. The first pack is random, or started with "
             "the white box in it. Whose arm is which: docs/arm.md.",
         ),
     )
 
 
-def judge(default: bool, sticky: bool, seeds: int) -> str:
-    if seeds < FEWEST:
-        return f"open: {seeds} of {FEWEST} seeds"
+def judge(default: bool, sticky: bool, seeds: int, needed: int) -> str:
+    if seeds < needed:
+        return f"open: {seeds} of {needed} seeds"
     return YES if default and sticky else LIKE if sticky else "on the default arm" if default else NO
 
 
 def _judge(found: Found, default: bool, sticky: bool) -> str:
-    return judge(default, sticky, len(found.request.every_seed))
+    return judge(default, sticky, len(found.request.every_seed), fewest())
 
 
 def _reached(printed: float, *runs: Sequence[float]) -> bool:
@@ -229,7 +229,9 @@ def _superior(found: Found) -> Row:
     counted = ", ".join(f"{word} {tally.count(word)}" for word in ("lower", "higher", "not told apart"))
     told = [_duel(problem, duel) for problem, duel in duels.items()]
     elsewhere = f"its costs on shifted functions: {counted}, of {len(tally)} pairs (Mann-Whitney, Holm)"
-    return Row("GWO-WOA is superior to GWO, WOA and PSO", (*told, elsewhere, _judge(found, holds, holds)))
+    needed = fewest(sum(map(len, duels.values())))
+    judged = judge(holds, holds, len(found.request.every_seed), needed)
+    return Row("GWO-WOA is superior to GWO, WOA and PSO", (*told, elsewhere, judged))
 
 
 def _of_rivals(costs: Mapping[str, Sequence[float]]) -> dict[str, Sequence[float]]:

@@ -9,7 +9,7 @@ import numpy as np
 
 from greywhale.identify.pack_search import BUDGET as IDENTIFYING
 from greywhale.tune.paper import BUDGET
-from greywhale_paper.optimisers.significance import FEWEST, SIGNIFICANCE, against, against_each, mean_ranks
+from greywhale_paper.optimisers.significance import SIGNIFICANCE, against, against_each, fewest, mean_ranks
 from greywhale_paper.pages.document import Chapter, Entry, Picture, Row, Sheet, Status, words
 from greywhale_paper.pages.found import Found
 from greywhale_paper.pages.numbers import several
@@ -111,8 +111,11 @@ def _say(costs: Mapping[str, list[float]], budget: int) -> Any:
         [SAID[name] for name, one in verdicts.items() if one.word == word]
         for word in ("lower", "higher", "not told apart")
     )
-    if len(costs[OURS]) < FEWEST:
-        return words(f"With {len(costs[OURS])} seeds no difference can be told from chance; take {FEWEST} or more.")
+    if len(costs[OURS]) < (needed := fewest(len(verdicts))):
+        return words(
+            f"With {len(costs[OURS])} seeds none of {len(verdicts)} differences can be told from chance, however big; "
+            f"take {needed}."
+        )
     return words(
         f"With {budget} evaluations the paper's GWO-WOA finds lower costs than {_list(lower)}; higher ones than "
         f"{_list(higher)}; it is not told apart from {_list(same)}."
