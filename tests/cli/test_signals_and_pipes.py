@@ -42,7 +42,7 @@ def test_ctrl_c_leaves_motors_off_and_the_log_whole(tmp_path: Path, number: sign
         assert board.state is State.DISABLED
         assert board.asked(schema.StopRequest) >= 1
     assert process.returncode == 130
-    kept = f"interrupted. What was recorded is in {out}, marked as interrupted."
+    kept = f"interrupted. What was recorded is in {out}, marked as interrupted. The motors are off."
     assert json.loads(output) == {"error": kept, "exit_code": 130}
     assert "Traceback" not in errors
     log = read_log(out)

@@ -68,7 +68,7 @@ GOOD = "[[wheel]]\nradius = 0.5\n"
         ("wheel = []", "wheel 1"),
         ("radius = 3\n", "unknown radius spelling 1 more"),
         ("[[wheel]]\nraduis = 1\n", "unknown wheel[0].raduis radius 1 more"),
-        ("# a log\n\ntime_s,leader_0\n0.0,1.0\n", "TOML log CSV"),
+        ("# a log\n\ntime_s,leader_0\n0.0,1.0\n", "log CSV TOML"),
         ("radius = \n", "TOML line 1 column 10"),
     ],
 )

@@ -71,6 +71,7 @@ class Device:
         self._started: bytes | None = None
         self._greeted = False
         self._motors_may_run = False
+        self._broke_off = False  # by Ctrl-C, with the motors on
         with contextlib.ExitStack() as held:
             self._session = held.enter_context(Session.of(port))
             held.callback(self._session.detach)
@@ -98,12 +99,16 @@ class Device:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         self._session.explain(error)
+        broke_off = self._broke_off or (self._motors_may_run and isinstance(error, KeyboardInterrupt))
         try:
             self.close()
         except UserError as problem:
             if error is None:
                 raise
             error.add_note(problem.message)
+        else:
+            if error is not None and broke_off:
+                error.add_note("The motors are off.")
 
     def close(self) -> None:
         """Stop the motors if they may run, then close the port."""
@@ -208,6 +213,7 @@ class Device:
             self._session.explain(error)
             try:
                 self.stop()
+                self._broke_off = isinstance(error, KeyboardInterrupt)
             except UserError as problem:
                 gone = isinstance(error, PortLostError | PortDisturbedError)  # which needs not be said twice
                 error.add_note(self._unconfirmed_stop() if gone else problem.message)

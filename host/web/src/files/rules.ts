@@ -236,7 +236,7 @@ export const notUtf8 = ({ at }: Filling<"at">): string => `byte ${at} is not UTF
 export const tooLong = ({ count, most }: Filling<"count" | "most">): string => `${count} characters; a TOML file of greywhale has at most ${most}.`;
 export const tooDeep = ({ most }: Filling<"most">): string => `nested more than ${most} deep; no file of greywhale is.`;
 export const noToml = ({ why }: Filling<"why">): string => `not valid TOML: ${why}.`;
-export const csvInItsPlace = (): string => `not valid TOML: this is a log or a motion (CSV).`;
+export const csvInItsPlace = (): string => `this is a log or a motion (CSV), but a TOML file is needed here.`;
 export const noTomlLine = ({ line }: Filling<"line">): string => `not valid TOML: line ${line} is neither KEY = VALUE nor a [TABLE]; is this a file of greywhale?`;
 export const empty = (): string => `it is empty; choose another file.`;
 export const commentsAlone = (): string => `it is empty, but for comments; choose another file.`;

@@ -116,14 +116,9 @@ def _say(costs: Mapping[str, list[float]], budget: int) -> Any:
             f"With {len(costs[OURS])} seeds none of {len(verdicts)} differences can be told from chance, however big; "
             f"take {needed}."
         )
-    return words(
-        f"With {budget} evaluations the paper's GWO-WOA finds lower costs than {_list(lower)}; higher ones than "
-        f"{_list(higher)}; it is not told apart from {_list(same)}."
-    )
-
-
-def _list(names: list[str]) -> str:
-    return ", ".join(names) if names else "none"
+    found = (("finds lower costs than", lower), ("finds higher costs than", higher), ("is not told apart from", same))
+    parts = [f"{what} {', '.join(names)}" for what, names in found if names]
+    return words(f"With {budget} evaluations the paper's GWO-WOA {'; it '.join(parts)}.")
 
 
 def _functions(found: Found) -> Sheet:
