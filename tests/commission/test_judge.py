@@ -82,6 +82,12 @@ def test_an_arm_that_was_restless_before_may_stay_as_it_was_but_no_more() -> Non
     assert seen[holding] == pytest.approx(0.003), "there its neighbours push it"
 
 
+def test_an_arm_that_was_tuned_before_may_differ_by_what_recordings_do() -> None:
+    """Two recordings with the same controllers differ by a millirad rms, a tuned joint's error is three."""
+    tuned = replace(BEFORE, error=np.full(SHAPE, 9e-6))
+    assert Limits.of(tuned, KEPT, QUIET_V).error[PARTS.index("reaches")] == pytest.approx(1.04 * 9e-6 + 1e-6)
+
+
 def test_a_joint_that_keeps_its_controller_may_feel_its_neighbours() -> None:
     """A tenth of its error, or two milliradians."""
     kept = np.array([False, False, False, True])

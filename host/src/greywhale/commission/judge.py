@@ -54,7 +54,7 @@ class Limits:
         them.
         """
         own, swings = judging.judge, judging.swings
-        error = np.maximum((1.0 + np.where(kept, own.kept_share, swings.repeat_share)) * before.error, LEAST_RAD2)
+        error = (1.0 + np.where(kept, own.kept_share, swings.repeat_share)) * before.error + own.repeat_rad2
         unseen_rad = np.full((len(PARTS), 1), own.unseen_rad)
         unseen_rad[PARTS.index(HOLDING)] = own.unseen_holding_rad
         unseen = np.maximum(error, (np.sqrt(before.error) + unseen_rad) ** 2)
