@@ -21,6 +21,7 @@ from greywhale.arm.parameters import USUAL_TRACK_RAD
 from greywhale.base.types import Floats
 from greywhale.identify.closed_loop import Loop
 from greywhale.identify.data import Prepared, prepare
+from greywhale.identify.knocking import turns_of
 from greywhale.identify.limits import IDENTIFICATION_LIMITS, UncertaintyLimits
 from greywhale.identify.space import COUPLED, WHOLE_ARM, Space
 from greywhale.identify.steps import WindowFit
@@ -41,6 +42,7 @@ def scatter_of_fits(
     x: Floats,
     covariance: Floats,
     joints: Sequence[int],
+    knocking: Sequence[int],
     seed: int,
     report: Callable[[float], None],
 ) -> Floats:
@@ -55,11 +57,14 @@ def scatter_of_fits(
     def fit(number: int) -> Floats:
         made = [_simulate(*pair, plant, zero, 1 + number + LOGS * seed) for pair in zip(logs, loops, strict=True)]
         windows = WindowResidual(made, space.arm, joints, longest_step=SLICE_S)
-        windows.settle(plant, zero)
         start = x + logs[0].limits.uncertainty.start_sigmas * root @ np.random.default_rng(
             [seed, number]
         ).standard_normal(len(x))
-        return WindowFit(windows, space, np.clip(start, low, high)).run(STEPS) - x
+        fitted = np.clip(start, low, high)
+        for seen, free in turns_of(windows, space, knocking):
+            seen.settle(plant, zero)
+            fitted = WindowFit(seen, space, fitted, free).run(STEPS)
+        return fitted - x
 
     found: list[Floats] = []
     # Two at a time: one works in numpy while the other simulates.

@@ -24,6 +24,7 @@ class Candidate:
     order: str
     held_out: float | None = None
     closed: bool = False  # fitted to the closed loop too
+    knocking: tuple[int, ...] = ()  # joints whose gears are fitted to short windows
 
     @property
     def kinds(self) -> tuple[str, ...]:

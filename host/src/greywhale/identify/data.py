@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -102,6 +102,13 @@ def prepare(log: Log, filter_shift: int | None, judging: IdentificationLimits = 
     places = _places(velocity, runs, limits)
     still = undriven(log, used)
     return Prepared(log, runs, period, delay, smooth, velocity, acceleration, places, noise, moving, still, judging)
+
+
+def in_brief(log: Prepared) -> Prepared:
+    """The log with the short windows that gears are fitted to."""
+    data = log.limits.data
+    short = replace(data, window_s=data.gear_window_s, max_windows=data.max_gear_windows)
+    return replace(log, limits=replace(log.limits, data=short))
 
 
 def pot_noise(log: Prepared, filter_shift: int, supply: float) -> Floats:

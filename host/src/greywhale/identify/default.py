@@ -9,6 +9,7 @@ from greywhale.identify.bootstrap import scatter_of_fits, spread_covariance
 from greywhale.identify.candidate import Candidate
 from greywhale.identify.combinations import combinations
 from greywhale.identify.found_model import FoundModel, ParameterEstimate, Rival
+from greywhale.identify.knocking import turns_of
 from greywhale.identify.request import IdentificationRequest
 from greywhale.identify.samples import draw_plants, read_search
 from greywhale.identify.search import Search
@@ -34,8 +35,9 @@ def find_default(task: IdentificationRequest) -> FoundModel:
     assert best is not None
     task.report("judging the model", 0.0)
     windows = WindowResidual(prepared, arm, joints, longest_step=SLICE_S)
-    windows.settle(best.plant, best.zero)
-    sure = uncertainty(windows, best.space, best.x, joints, to_read=True)
+    for seen, _ in turns_of(windows, best.space, best.knocking):
+        seen.settle(best.plant, best.zero)
+    sure = uncertainty(windows, best.space, best.x, joints, best.knocking, to_read=True)
     if search.complete and search.loops:
         scatter = scatter_of_fits(
             prepared,
@@ -44,6 +46,7 @@ def find_default(task: IdentificationRequest) -> FoundModel:
             best.x,
             sure.covariance,
             joints,
+            best.knocking,
             task.seed,
             lambda done: task.report("testing the fit", done),
         )

@@ -16,6 +16,9 @@ class DataLimits:
     """A log made ready: its stretches, velocities and windows."""
 
     window_s: float = limit(0.5, "s", "length of a window, simulated from a known start")
+    gear_window_s: float = limit(
+        0.15, "s", "the same where gears are fitted: soon chance decides where a joint is that knocks about in its gap"
+    )
     smoothing_s: float = limit(0.04, "s", "the angle is smoothed over this to find velocities")
     led_s: float = limit(0.1, "s", "before a window the log leads the links: motors come to theirs")
     compared_s: float = limit(5e-3, "s", "between compared readings: closer ones differ in noise only")
@@ -26,6 +29,7 @@ class DataLimits:
     held_out_every: int = limit(4, "blocks", "the last of so many is held out")
     lively_rad: float = limit(0.01, "rad", "in a lively window a joint moves by more than this")
     max_windows: int = limit(120, "windows", "more would take longer, and hardly tell more")
+    max_gear_windows: int = limit(240, "windows", "the same of the short ones that gears are fitted to")
 
 
 @dataclass(frozen=True)
@@ -87,6 +91,16 @@ class SearchLimits:
         0.05,
         "of log(1 + squares over noise)",
         "teeth that bend start a fit where they alone predict so much better",
+    )
+    knocking: float = limit(
+        1.0,
+        "of log(1 + squares over noise)",
+        "a joint that windows miss by more may knock about in its gap",
+    )
+    knocking_gain: float = limit(
+        0.02,
+        "of log(1 + squares over noise)",
+        "its gear is fitted to short windows where they are so much better predicted then",
     )
     probe_slack: float = limit(
         0.04, "of the held-out misfit", "an order gets a whole fit if a short one leaves no more on top"

@@ -5,9 +5,11 @@
    (docs/identify.md).
 2. Groups of quantities are added one after the other: Stribeck friction, backlash, zero angles. Each is fitted to three
    quarters of the log's windows, spread all over it. It stays only if the model then predicts the other quarter better.
-3. Where the controller is known, a fit to windows and closed loop together competes with the fit to windows alone. It
+3. Joints that the windows miss by far may knock about in the gaps of their gears. These gears are fitted to short
+   windows, if that predicts held-out ones better.
+4. Where the controller is known, a fit to windows and closed loop together competes with the fit to windows alone. It
    wins if it predicts the held-out part of the closed loop better.
-4. The chosen model is fitted to the whole log.
+5. The chosen model is fitted to the whole log.
 
 A search may begin with a model of the same arm, found from fewer logs. Its quantities are then fitted at once after
 step 1, and only orders that it lacks are tried.
@@ -21,11 +23,12 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from greywhale.arm import ArmParameters
-from greywhale.base.types import Floats, Progress
+from greywhale.base.types import Flags, Floats, Progress
 from greywhale.identify.candidate import Candidate, WindowsAndLoop
 from greywhale.identify.closed_loop import Loop, LoopResidual
 from greywhale.identify.data import Prepared
 from greywhale.identify.fit import least_squares_fit
+from greywhale.identify.knocking import knocking_joints, knocking_starts, turns_of, with_better_gears
 from greywhale.identify.nearer import cost, far_joints, with_nearer_torque
 from greywhale.identify.soft_teeth import with_soft_teeth
 from greywhale.identify.space import MOTOR, Space
@@ -119,6 +122,7 @@ class Search:
                 self._consider_nearer()
             if self.best is before:
                 break
+        self._consider_knocking()
         if self.loops:
             self._consider_closed()
         self._fit_whole()
@@ -200,6 +204,20 @@ class Search:
         bent = self._fit_best([stiff, soft])
         return bent if self._error(bent) < self._error(stiff) - self._limits.soft_teeth else stiff
 
+    def _consider_knocking(self) -> None:
+        """Fit gears to short windows, where joints may knock about in their gaps; held-out ones decide for each."""
+        best = self.best
+        assert best is not None
+        knocking = knocking_joints(self._fitted, best) if "gap" in best.kinds else ()
+        if not knocking:
+            return
+        known = () if self.begin is None else (replace(best, x=best.space.translate(self.begin.x, self.begin.space)),)
+        starts = knocking_starts(best, knocking, known, self.logs)
+        self._begin_part("fitting gears to short windows", 0.0, 1.0, 2 * FITS * (len(starts) + 2))
+        found = with_better_gears(best, self._fit_best(starts), self._held)
+        if found.knocking:
+            self.best = self._measure(self._settle(self._fitted, found))
+
     def _fit_begun(self, begin: Candidate) -> Candidate:
         """Fit the quantities of the model to begin with, from its values and from this search's own."""
         assert self.best is not None
@@ -211,7 +229,8 @@ class Search:
     def _fit_best(self, starts: Sequence[Candidate]) -> Candidate:
         """Fit one model from several starts; the best goes on for each group of joints that feel each other."""
         tried = [self._settle(self._fitted, one) for one in starts]
-        errors = np.array([self._fitted.settled_error(one.plant, one.zero) for one in tried])
+        seen = turns_of(self._fitted, starts[0].space, starts[0].knocking)[0][0]  # those that gears are fitted to
+        errors = np.array([seen.settled_error(one.plant, one.zero) for one in tried])
         mixed = tried[0].space.mix([one.x for one in tried], errors, self.joints)
         return self._settle(self._fitted, replace(tried[0], x=mixed))
 
@@ -293,18 +312,28 @@ class Search:
         name = order if candidate.order in ("motors", "Coulomb friction") else f"{candidate.order}, {order}"
         return Candidate(space, space.translate(candidate.x, candidate.space), name)
 
-    def _refine(self, windows: WindowResidual, candidate: Candidate, steps: int = WINDOW_STEPS) -> Candidate:
-        return replace(candidate, x=self._fit_windows(windows, candidate.space, candidate.x, steps))
+    def _refine(
+        self, windows: WindowResidual, candidate: Candidate, steps: int = WINDOW_STEPS, free: Flags | None = None
+    ) -> Candidate:
+        return replace(candidate, x=self._fit_windows(windows, candidate.space, candidate.x, steps, free))
 
     def _settle(self, windows: WindowResidual, candidate: Candidate) -> Candidate:
+        """Fit a model's numbers in their turns."""
+        for seen, free in turns_of(windows, candidate.space, candidate.knocking):
+            if candidate.knocking:
+                seen.settle(candidate.plant, candidate.zero)
+            candidate = self._settle_turn(seen, candidate, free)
+        return candidate
+
+    def _settle_turn(self, windows: WindowResidual, found: Candidate, free: Flags) -> Candidate:
         """Least squares and the choice of where each window starts in the gaps, in turns until that choice no longer
         changes.
         """
-        found = self._refine(windows, candidate)
+        found = self._refine(windows, found, free=free)
         for _ in range(SETTLINGS):
             if not windows.settle(found.plant, found.zero):
                 break
-            found = self._refine(windows, found, SETTLED_STEPS)
+            found = self._refine(windows, found, SETTLED_STEPS, free)
         return found
 
     def _consider_closed(self) -> None:
@@ -367,9 +396,11 @@ class Search:
         self._part = what, done, until, (until - done) / fits
         self.report(what, done)
 
-    def _fit_windows(self, windows: WindowResidual, space: Space, start: Floats, steps: int) -> Floats:
+    def _fit_windows(
+        self, windows: WindowResidual, space: Space, start: Floats, steps: int, free: Flags | None = None
+    ) -> Floats:
         """Run least squares on windows, and count what was simulated."""
-        fit = WindowFit(windows, space, start)
+        fit = WindowFit(windows, space, start, free)
         what, done, until, each = self._part
         found = fit.run(steps, lambda share: self.report(what, min(until, done + each * share)))
         self._part = what, min(until, done + each), until, each

@@ -23,7 +23,7 @@ def with_soft_teeth(
     """The model with soft teeth on joints that show them, by how else it would do with a `stiff` gear; None where none
     does.
     """
-    tried = [stiff, *(_with_swing(stiff, logs, hertz) for hertz in SWINGS_HZ)]
+    tried = [stiff, *(with_swing(stiff, logs, hertz) for hertz in SWINGS_HZ)]
     errors = np.array([np.mean(np.log1p(windows.misfit(one.plant, one.zero)), axis=0) for one in tried])
     x, soft = found.x.copy(), False
     for place, joint in enumerate(windows.joints):
@@ -34,7 +34,7 @@ def with_soft_teeth(
     return replace(found, x=x) if soft else None
 
 
-def _with_swing(candidate: Candidate, logs: Sequence[Prepared], hertz: float) -> Candidate:
+def with_swing(candidate: Candidate, logs: Sequence[Prepared], hertz: float) -> Candidate:
     """The model where every joint swings so often on its teeth."""
     space, plant = candidate.space, candidate.plant
     pose = np.mean([log.smooth[run.slice].mean(axis=0) for log in logs for run in log.runs], axis=0)

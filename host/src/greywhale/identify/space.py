@@ -69,6 +69,7 @@ KINDS = {
     "offset": Kind("rad", "angle at which the potentiometer reads 0", False, 0.0, -0.3, 0.3, 1e-3, 0.1),
 }
 MOTOR = ("alpha", "inertia", "damping")
+GEAR = ("gap", "drag", "teeth", "ringing")  # what short windows tell of a gear
 # Joints that feel each other while one of their numbers is varied a little. The pitch joints carry one another. Yaw and
 # roll feel the others through their poses only, and each other by a few per cent at most.
 COUPLED = ((0,), (1, 2), (3,))

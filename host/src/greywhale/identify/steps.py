@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
-from greywhale.base.types import Floats
+from greywhale.base.types import Flags, Floats
 from greywhale.identify.space import COUPLED, WHOLE_ARM, Space
 from greywhale.identify.windows import WindowResidual
 from greywhale.protocol.firmware import JOINTS
@@ -38,11 +38,14 @@ class _Block:
 
 
 class WindowFit:
-    """One fit. The misfit that counts as usual is measured where the fit starts."""
+    """One fit, of all searched numbers or of those marked `free`. The misfit that counts as usual is measured where it
+    starts.
+    """
 
-    def __init__(self, residual: WindowResidual, space: Space, start: Floats) -> None:
+    def __init__(self, residual: WindowResidual, space: Space, start: Floats, free: Flags | None = None) -> None:
         self._residual = residual
         self._space = space
+        self._free = np.ones(len(start), dtype=bool) if free is None else free
         self._nominal = space.start()
         self._doubts = space.doubts()
         low, high = space.bounds()
@@ -62,7 +65,7 @@ class WindowFit:
 
     def _block(self, joints: tuple[int, ...], whose: tuple[int, ...]) -> _Block:
         """The numbers of `whose`, which move these joints."""
-        numbers = [n for n, one in enumerate(self._space.parameters) if one.joint in whose]
+        numbers = [n for n, one in enumerate(self._space.parameters) if one.joint in whose and self._free[n]]
         return _Block(joints, np.array(numbers, dtype=np.intp), np.flatnonzero(np.isin(self._joint_of, joints)))
 
     def run(self, most_steps: int, report: Callable[[float], None] = lambda share: None) -> Floats:

@@ -17,6 +17,7 @@ from greywhale.arm import ArmParameters
 from greywhale.arm.parameters import JOINT_NAMES
 from greywhale.arm.plants import plant_row
 from greywhale.base.types import Floats
+from greywhale.identify.knocking import turns_of
 from greywhale.identify.limits import IDENTIFICATION_LIMITS, UncertaintyLimits
 from greywhale.identify.space import KINDS, WHOLE_ARM, Parameter, Space
 from greywhale.identify.windows import WindowResidual
@@ -77,20 +78,27 @@ class Uncertainty:
 
 
 def uncertainty(
-    residual: WindowResidual, space: Space, x: Floats, joints: Sequence[int], to_read: bool = False
+    windows: WindowResidual,
+    space: Space,
+    x: Floats,
+    joints: Sequence[int],
+    knocking: Sequence[int] = (),
+    to_read: bool = False,
 ) -> Uncertainty:
     """Evaluate at a found point. Numbers that the readings leave open are as uncertain as the user's arm file.
 
-    `to_read`: people read the deviations; else masses and lengths need not be looked at.
+    Gears of `knocking` joints were fitted to short windows. `to_read`: people read the deviations; else masses and
+    lengths need not be looked at.
     """
     # Wide differences: a joint that hunts makes the residual rough, and roughness is no information.
-    limits = residual.limits.uncertainty
+    residual, limits = _AllWindows(windows, space, knocking), windows.limits.uncertainty
     steps = limits.wide_difference * space.doubts()
     _, high = space.bounds()
     ahead = np.where(x + steps > high, -steps, steps)
     numbers = residual(space, np.vstack([x[None], x[None, :] + np.diag(ahead)]))
     jacobian = ((numbers[1:] - numbers[0]) / ahead[:, None]).T
-    information = jacobian.T @ jacobian
+    fitted = np.where(residual.fitted, jacobian, 0.0)
+    information, slopes = fitted.T @ fitted, fitted.T @ jacobian
     # Each number in its own natural size: a factor of e, or a step that makes it another value of the quantity.
     natural = dict(limits.open_steps)
     size = np.array([1.0 if space.kind(n).logarithmic else natural[one.kind] for n, one in enumerate(space.parameters)])
@@ -98,14 +106,33 @@ def uncertainty(
     known = float(values[0]) * LARGEST_CONDITION > float(values[-1])
     condition = float(values[-1]) / float(values[0]) if known else LARGEST_CONDITION
     gradients = np.zeros((residual.clusters.max() + 1, len(space)))
-    np.add.at(gradients, residual.clusters, jacobian * numbers[0][:, None])
-    covariance = _combine(information, gradients.T @ gradients, np.diag(space.doubts_at(x) ** -2.0))
+    np.add.at(gradients, residual.clusters, fitted * numbers[0][:, None])
+    covariance = _combine(information, gradients.T @ gradients, slopes, np.diag(space.doubts_at(x) ** -2.0))
     besides = np.zeros_like(covariance)
     if to_read:
-        besides = _covariance_by_links(residual, space, x, numbers[0], jacobian, limits)
+        fit = np.linalg.inv(slopes + np.diag(space.doubts() ** -2.0)) @ fitted.T
+        others = [replace(space, arm=arm, base=plant_row(arm)) for arm in _with_other_links(space.arm, limits)]
+        # Where a fit with other masses and lengths would end.
+        moved = np.array([fit @ (residual(other, x[None])[0] - numbers[0]) for other in others])
+        besides = moved.T @ moved
         besides += np.diag(_foreign(space, limits) ** 2)
     found = _describe_open(space, x, np.sqrt(np.diag(covariance + besides)), joints, limits)
     return Uncertainty(covariance, besides, condition, tuple(found), limits)
+
+
+class _AllWindows:
+    """Windows, and the short ones that gears of `knocking` joints are fitted to, in one residual."""
+
+    def __init__(self, windows: WindowResidual, space: Space, knocking: Sequence[int]) -> None:
+        turns = turns_of(windows, space, knocking)
+        self._seen = [seen for seen, _ in turns]
+        # (numbers of the residual, searched numbers): true where the one is fitted to the other.
+        self.fitted = np.repeat([own for _, own in turns], [len(seen.clusters) for seen in self._seen], axis=0)
+        before = np.cumsum([0, *(seen.windows for seen in self._seen)])
+        self.clusters = np.concatenate([first + seen.clusters for first, seen in zip(before, self._seen, strict=False)])
+
+    def __call__(self, space: Space, points: Floats) -> Floats:
+        return np.concatenate([seen(space, points) for seen in self._seen], axis=1)
 
 
 def _foreign(space: Space, limits: UncertaintyLimits) -> Floats:
@@ -116,17 +143,6 @@ def _foreign(space: Space, limits: UncertaintyLimits) -> Floats:
         if one.kind == "gap" and f"joint{one.joint}.play" in names:
             found[index] = limits.gap_beside_play_rad
     return found
-
-
-def _covariance_by_links(
-    residual: WindowResidual, space: Space, x: Floats, numbers: Floats, jacobian: Floats, limits: UncertaintyLimits
-) -> Floats:
-    """The covariance of the searched numbers that comes from masses and lengths: where a fit with others would end."""
-    fit = np.linalg.inv(jacobian.T @ jacobian + np.diag(space.doubts() ** -2.0))
-    others = [replace(space, arm=arm, base=plant_row(arm)) for arm in _with_other_links(space.arm, limits)]
-    moved = np.array([fit @ jacobian.T @ (residual(other, x[None])[0] - numbers) for other in others])
-    covariance: Floats = moved.T @ moved
-    return covariance
 
 
 def _with_other_links(arm: ArmParameters, limits: UncertaintyLimits) -> list[ArmParameters]:
@@ -142,18 +158,19 @@ def _with_other_links(arm: ArmParameters, limits: UncertaintyLimits) -> list[Arm
     return arms
 
 
-def _combine(information: Floats, scatter: Floats, nominal: Floats) -> Floats:
+def _combine(information: Floats, scatter: Floats, slopes: Floats, nominal: Floats) -> Floats:
     """The covariance from three sources.
 
     `information` is what the readings would tell if only noise were in them. `scatter`, of the clusters' gradients, is
-    how much they disagree beyond that. `nominal` is the user's arm file, as information. The readings tell information
-    x scatter^-1 x information (Godambe). Few clusters show the scatter badly, so it is drawn half way towards the
-    information times one common factor. Numbers that the readings leave open stay as uncertain as in the arm file.
+    how much they disagree beyond that. `nominal` is the user's arm file, as information. With the `slopes` of the
+    gradients the readings tell slopes x scatter^-1 x slopes (Godambe). Few clusters show the scatter badly, so it is
+    drawn half way towards the information times one common factor. Numbers that the readings leave open stay as
+    uncertain as in the arm file.
     """
     inverse = np.linalg.inv(information + nominal)
     common = float(np.trace(inverse @ scatter) / np.trace(inverse @ information))
     drawn = (scatter + common * information) / 2.0 + 1e-9 * nominal
-    told = information @ np.linalg.solve(drawn, information)
+    told = slopes.T @ np.linalg.solve(drawn, slopes)
     covariance = np.linalg.inv((told + told.T) / 2.0 + nominal)
     return (covariance + covariance.T) / 2.0
 

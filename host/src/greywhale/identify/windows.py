@@ -7,8 +7,9 @@ nearly linear in them. That keeps the residual smooth in the parameters, and fai
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,7 +19,7 @@ from greywhale.arm import ArmParameters
 from greywhale.arm.body import Body
 from greywhale.arm.plants import column, plant_row
 from greywhale.base.types import Floats
-from greywhale.identify.data import STEP_S, Prepared, Windows, part_of, some_windows, windows_of
+from greywhale.identify.data import STEP_S, Prepared, Windows, in_brief, part_of, some_windows, windows_of
 from greywhale.identify.limits import IDENTIFICATION_LIMITS, DataLimits
 from greywhale.identify.space import Space
 from greywhale.protocol.firmware import JOINTS
@@ -45,6 +46,9 @@ class WindowResidual:
         """At most about so many windows of the logs as their limits say, those held out or the others; of these, one in
         `every`.
         """
+        self._in_brief: Callable[[], WindowResidual] = lambda: WindowResidual(
+            [in_brief(log) for log in logs], arm, joints, held_out, every, longest_step
+        )
         self.joints = list(joints)
         self.limits = logs[0].limits if logs else IDENTIFICATION_LIMITS
         data = self.limits.data
@@ -58,6 +62,11 @@ class WindowResidual:
         self.windows = sum(len(windows.first) for windows, _ in self._pieces)
         self.seconds = sum(len(windows.first) * windows.rows * log.period for windows, log in self._pieces)
         self.clusters, self.joint_of = self._places_of_numbers()
+
+    @cached_property
+    def brief(self) -> WindowResidual:
+        """These logs in the short windows that gears are fitted to."""
+        return self._in_brief()
 
     def __call__(self, space: Space, points: Floats) -> Floats:
         """(candidates, numbers)."""
