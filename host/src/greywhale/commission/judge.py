@@ -54,12 +54,10 @@ class Limits:
         them.
         """
         own, swings = judging.judge, judging.swings
-        error = (1.0 + np.where(kept, own.kept_share, swings.repeat_share)) * before.error + own.repeat_rad2
-        unseen_rad = np.full((len(PARTS), 1), own.unseen_rad)
-        unseen_rad[PARTS.index(HOLDING)] = own.unseen_holding_rad
-        unseen = np.maximum(error, (np.sqrt(before.error) + unseen_rad) ** 2)
-        error = np.where(kept, unseen, error)
-        error[HARDLY_MOVED] = unseen[HARDLY_MOVED]
+        share = np.where(kept, own.kept_share, swings.repeat_share)
+        unseen_rad = np.tile(np.where(kept, own.unseen_rad, own.repeat_rad), (len(PARTS), 1))
+        unseen_rad[HARDLY_MOVED], unseen_rad[PARTS.index(HOLDING)] = own.unseen_rad, own.unseen_holding_rad
+        error = np.maximum((1.0 + share) * before.error, (np.sqrt(before.error) + unseen_rad) ** 2)
         growth = np.tile(np.where(kept, own.kept_growth, swings.unrest_growth), (len(PARTS), 1))
         least = np.full((len(PARTS), 1), swings.unseen_unrest_rad)
         growth[PUSHED], least[PUSHED] = own.kept_growth, own.pushed_rad
