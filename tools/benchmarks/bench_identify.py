@@ -81,16 +81,20 @@ def held(outcome: IdentificationResult, arm: ArmParameters) -> dict[str, list[bo
         if one.deviation is None:
             continue
         parameter = Parameter.from_name(one.name)
-        space = Space.of(arm, (parameter.kind,), (parameter.joint,))
-        kind, true_value = KINDS[parameter.kind], float(space.start()[0])
-        off = kind.to_search(one.value) - true_value
+        kind = KINDS[parameter.kind]
+        off = kind.to_search(one.value) - true_number(arm, parameter)
         width = one.deviation / one.value if kind.logarithmic else one.deviation
-        verdicts.setdefault(parameter.kind, []).append(has(arm, parameter) and abs(off) <= HALF * width)
+        verdicts.setdefault(parameter.kind, []).append(abs(off) <= HALF * width)
     return verdicts
 
 
+def true_number(arm: ArmParameters, parameter: Parameter) -> float:
+    """The searched number of this arm; 0 of wear that it does not have."""
+    return float(Space.of(arm, (parameter.kind,), (parameter.joint,)).start()[0]) if has(arm, parameter) else 0.0
+
+
 def has(arm: ArmParameters, parameter: Parameter) -> bool:
-    """False for wear that this arm does not have; no interval of it can hold the truth."""
+    """False for wear that this arm does not have."""
     if parameter.kind == "sag":
         return arm.drive.supply_resistance > 0.0
     joint, pot = arm.joint[parameter.joint], arm.follower_pots.joint[parameter.joint]
