@@ -10,10 +10,12 @@ import pytest
 
 from greywhale.arm import ArmParameters
 from greywhale.arm.plants import column
+from greywhale.base.types import show_no_progress
 from greywhale.files.arm import default_arm
 from greywhale.identify.candidate import Candidate
 from greywhale.identify.data import Prepared, prepare
 from greywhale.identify.knocking import knocking_joints, knocking_starts, turns_of, with_better_gears
+from greywhale.identify.search import Search
 from greywhale.identify.space import KINDS, MOTOR, Space
 from greywhale.identify.uncertainty import uncertainty
 from greywhale.identify.windows import WindowResidual
@@ -100,6 +102,18 @@ def test_only_its_gear_is_fitted_to_short_windows(windows: WindowResidual, true_
     ((usual, rest),) = turns_of(windows, space, ())
     assert usual is windows
     assert rest.all()
+
+
+@pytest.mark.slow
+def test_a_search_finds_that_joint(log: Prepared) -> None:
+    """From an arm file with stiff teeth and less gap, at which the usual windows stay."""
+    arm = default_arm()
+    space = Space.of(arm, (*MOTOR, "coulomb", "gap", "drag", "teeth"), range(4))
+    search = Search(arm, [log], (), range(4), 0, show_no_progress, begin=Candidate(space, space.start(), "backlash"))
+    search.run()
+    assert search.best is not None
+    assert search.best.knocking == (ROLL,)
+    assert search.best.plant[column("half_gap", ROLL)] > 4e-3
 
 
 def test_its_gear_is_as_certain_as_short_windows_say(windows: WindowResidual, knocker: ArmParameters) -> None:
