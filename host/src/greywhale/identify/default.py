@@ -66,8 +66,8 @@ def find_default(task: IdentificationRequest) -> FoundModel:
         draws=draw_plants(best.space, best.x, sure.covariance, DRAWS, task.seed),
         condition=sure.condition,
         open=sure.open,
-        simulations=search.simulations,
-        simulated=search.simulated,
+        simulations=search.fits.simulations,
+        simulated=search.fits.simulated,
         complete=search.complete,
     )
 

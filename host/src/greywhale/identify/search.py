@@ -23,16 +23,15 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from greywhale.arm import ArmParameters
-from greywhale.base.types import Flags, Floats, Progress
+from greywhale.base.types import Progress
 from greywhale.identify.candidate import Candidate, WindowsAndLoop
 from greywhale.identify.closed_loop import Loop, LoopResidual
 from greywhale.identify.data import Prepared
-from greywhale.identify.fit import least_squares_fit
+from greywhale.identify.fits import FITS_TO_SETTLE, Fits
 from greywhale.identify.knocking import knocking_joints, knocking_starts, turns_of, with_better_gears
 from greywhale.identify.nearer import cost, far_joints, with_nearer_torque
 from greywhale.identify.soft_teeth import with_soft_teeth
 from greywhale.identify.space import MOTOR, Space
-from greywhale.identify.steps import WindowFit
 from greywhale.identify.windows import WindowResidual
 from greywhale.loop.leader import SLICE_S
 
@@ -70,18 +69,10 @@ GEARS: tuple[dict[str, float], ...] = (
 # The gear that a joint has which swings on its teeth, but for how far these bend.
 SWINGING = {"gap": 0.0, "drag": 0.01, "teeth": 2e-3}
 SOME_WINDOWS = 20
-WINDOW_STEPS = 20
 PROBE_STEPS = 8  # of a short fit
 # Orders of the first two turns always get a whole fit: much hangs on them.
 SURE_TURNS = (0, 1)
 ROUNDS = 2
-LOOP_STEPS = 10
-# The side of its gap from which each motor starts is chosen anew at most so often, each time for some steps of the fit.
-SETTLINGS = 4
-SETTLED_STEPS = 8
-FITS = 3  # so many it often takes until a candidate is settled; only the share that is reported hangs on it
-# Readings come in steps, so finite differences in the closed loop are wider than in the windows.
-LOOP_STEP_SCALE = 5.0
 
 
 @dataclass
@@ -97,18 +88,17 @@ class Search:
     begin: Candidate | None = None  # a model of this arm, found from other logs
     best: Candidate | None = None
     tried: list[Candidate] = field(default_factory=list)
-    simulations: int = 0
-    simulated: float = 0.0  # s
     complete: bool = False
 
     def __post_init__(self) -> None:
+        self.fits = Fits(self.joints, self.report)
         self._fitted = WindowResidual(self.logs, self.arm, self.joints, False)
         self._held = WindowResidual(self.logs, self.arm, self.joints, True)
         self._limits = self._held.limits.search
         self._far: Candidate | None = None
 
     def run(self) -> None:
-        self._begin_part("fitting the motors", 0.0, 1.0)
+        self.fits.begin_part("fitting the motors", 0.0, 1.0)
         self._consider(self._fit_motors())
         self._consider(self._fit_friction())
         if self.begin is not None:
@@ -143,7 +133,7 @@ class Search:
         while left:
             what, share = "choosing the model's order", 1.0 / len(TURNS)
             done = share * (number + 1 - len(left) / len(turn))
-            self._begin_part(what, done, done)
+            self.fits.begin_part(what, done, done)
             before = self.best
             assert before is not None
             extended = [(self._extend(before, order), order) for order in left]
@@ -156,7 +146,7 @@ class Search:
             found = []
             for place, (one, order) in enumerate(hopeful):
                 starts = len(GEARS) + 2 if order == "backlash" else 1
-                self._begin_part(what, done + share * place, done + share * (place + 1), FITS * starts)
+                self.fits.begin_part(what, done + share * place, done + share * (place + 1), FITS_TO_SETTLE * starts)
                 found.append(self._measure(self._fit_order(one, order)))
             errors = [float(one.held_out or 0.0) + self._least_gain(one) for one in found]
             winner = int(np.argmin(errors))
@@ -191,7 +181,7 @@ class Search:
     def _fit_order(self, candidate: Candidate, order: str) -> Candidate:
         """Fit an order's quantities along with the others, those of gears from several starts."""
         if order != "backlash":
-            return self._settle(self._fitted, candidate)
+            return self.fits.settle(self._fitted, candidate)
         return self._soften(self._fit_best([candidate, *(candidate.with_values(gear) for gear in GEARS)]))
 
     def _soften(self, stiff: Candidate) -> Candidate:
@@ -213,26 +203,26 @@ class Search:
             return
         known = () if self.begin is None else (replace(best, x=best.space.translate(self.begin.x, self.begin.space)),)
         starts = knocking_starts(best, knocking, known, self.logs)
-        self._begin_part("fitting gears to short windows", 0.0, 1.0, 2 * FITS * (len(starts) + 2))
+        self.fits.begin_part("fitting gears to short windows", 0.0, 1.0, 2 * FITS_TO_SETTLE * (len(starts) + 2))
         found = with_better_gears(best, self._fit_best(starts), self._held)
         if found.knocking:
-            self.best = self._measure(self._settle(self._fitted, found))
+            self.best = self._measure(self.fits.settle(self._fitted, found))
 
     def _fit_begun(self, begin: Candidate) -> Candidate:
         """Fit the quantities of the model to begin with, from its values and from this search's own."""
         assert self.best is not None
-        self._begin_part("fitting the model from before", 0.0, 1.0, FITS * (len(GEARS) + 3))
+        self.fits.begin_part("fitting the model from before", 0.0, 1.0, FITS_TO_SETTLE * (len(GEARS) + 3))
         own = replace(begin, x=begin.space.translate(self.best.x, self.best.space))
         gears = [own.with_values(gear) for gear in GEARS] if "gap" in begin.kinds else []
         return self._fit_best([begin, own, *gears])
 
     def _fit_best(self, starts: Sequence[Candidate]) -> Candidate:
         """Fit one model from several starts; the best goes on for each group of joints that feel each other."""
-        tried = [self._settle(self._fitted, one) for one in starts]
+        tried = [self.fits.settle(self._fitted, one) for one in starts]
         seen = turns_of(self._fitted, starts[0].space, starts[0].knocking)[0][0]  # those that gears are fitted to
         errors = np.array([seen.settled_error(one.plant, one.zero) for one in tried])
         mixed = tried[0].space.mix([one.x for one in tried], errors, self.joints)
-        return self._settle(self._fitted, replace(tried[0], x=mixed))
+        return self.fits.settle(self._fitted, replace(tried[0], x=mixed))
 
     def _was_tried(self, candidate: Candidate) -> bool:
         return any(set(one.space.names) == set(candidate.space.names) for one in self.tried)
@@ -242,7 +232,7 @@ class Search:
         assert before.held_out is not None
         few = WindowResidual(self.logs, self.arm, self.joints, False, 2)
         few.settle(before.plant, before.zero)
-        return self._error(self._refine(few, candidate, PROBE_STEPS)) < before.held_out * (
+        return self._error(self.fits.refine(few, candidate, PROBE_STEPS)) < before.held_out * (
             1.0 + self._limits.probe_slack
         )
 
@@ -280,7 +270,7 @@ class Search:
     def _fit_motors(self) -> Candidate:
         """Motors alone, starting from the user's values."""
         space = Space.of(self.arm, MOTOR, self.joints)
-        return self._refine(self._some_windows(), Candidate(space, space.start(), "motors"))
+        return self.fits.refine(self._some_windows(), Candidate(space, space.start(), "motors"))
 
     def _fit_friction(self) -> Candidate:
         """Least squares from the user's arm and from the fit without friction; the best by the fitted data."""
@@ -292,19 +282,12 @@ class Search:
         what, parts = "least squares from several starts", len(starts) + max(1, self._fitted.windows // SOME_WINDOWS)
         fits = []
         for number, point in enumerate(starts):
-            self._begin_part(what, number / parts, (number + 1) / parts)
-            fits.append(self._fit_windows(residual, space, point, WINDOW_STEPS))
-        self._begin_part(what, len(starts) / parts, 1.0)
-        return self._refine(
-            self._fitted, Candidate(space, self._mix_blocks(self._fitted, space, fits), "Coulomb friction")
+            self.fits.begin_part(what, number / parts, (number + 1) / parts)
+            fits.append(self.fits.fit_windows(residual, space, point))
+        self.fits.begin_part(what, len(starts) / parts, 1.0)
+        return self.fits.refine(
+            self._fitted, Candidate(space, self.fits.mix_blocks(self._fitted, space, fits), "Coulomb friction")
         )
-
-    def _mix_blocks(self, windows: WindowResidual, space: Space, fits: Sequence[Floats]) -> Floats:
-        """For each group of joints that feel each other, the numbers of the fit that is best for them: others may be
-        stuck.
-        """
-        errors = np.array([windows.mse(space.plants(x[None])[0], space.offsets(x[None])[0]) for x in fits])
-        return space.mix(fits, errors[:, list(self.joints)], self.joints)
 
     def _extend(self, candidate: Candidate, order: str) -> Candidate:
         """Return the model with the quantities of another order added, at their usual start."""
@@ -312,36 +295,12 @@ class Search:
         name = order if candidate.order in ("motors", "Coulomb friction") else f"{candidate.order}, {order}"
         return Candidate(space, space.translate(candidate.x, candidate.space), name)
 
-    def _refine(
-        self, windows: WindowResidual, candidate: Candidate, steps: int = WINDOW_STEPS, free: Flags | None = None
-    ) -> Candidate:
-        return replace(candidate, x=self._fit_windows(windows, candidate.space, candidate.x, steps, free))
-
-    def _settle(self, windows: WindowResidual, candidate: Candidate) -> Candidate:
-        """Fit a model's numbers in their turns."""
-        for seen, free in turns_of(windows, candidate.space, candidate.knocking):
-            if candidate.knocking:
-                seen.settle(candidate.plant, candidate.zero)
-            candidate = self._settle_turn(seen, candidate, free)
-        return candidate
-
-    def _settle_turn(self, windows: WindowResidual, found: Candidate, free: Flags) -> Candidate:
-        """Least squares and the choice of where each window starts in the gaps, in turns until that choice no longer
-        changes.
-        """
-        found = self._refine(windows, found, free=free)
-        for _ in range(SETTLINGS):
-            if not windows.settle(found.plant, found.zero):
-                break
-            found = self._refine(windows, found, SETTLED_STEPS, free)
-        return found
-
     def _consider_closed(self) -> None:
         """Fit windows and closed loop together; keep the fit if it predicts the held-out part of the closed loop
         better.
         """
         assert self.best is not None
-        self._begin_part("comparing with the closed loop", 0.0, 0.0)
+        self.fits.begin_part("comparing with the closed loop", 0.0, 0.0)
         closed = self._fit_closed(self._fitted, self.best, whole=False)
         share = 1.0 - self._limits.min_closed_improvement
         if self._closed_error(closed) < share * self._closed_error(self.best):
@@ -349,7 +308,7 @@ class Search:
 
     def _fit_closed(self, windows: WindowResidual, candidate: Candidate, whole: bool) -> Candidate:
         both = WindowsAndLoop(windows, LoopResidual(self._loops_of(candidate), self.joints, whole), candidate)
-        return replace(candidate, x=self._fit(both, candidate.space, candidate.x), closed=True)
+        return replace(candidate, x=self.fits.fit_with_loop(both, candidate.space, candidate.x), closed=True)
 
     def _closed_error(self, candidate: Candidate) -> float:
         errors = [loop.error(candidate.plant[None], True)[0, list(self.joints)] for loop in self._loops_of(candidate)]
@@ -366,12 +325,12 @@ class Search:
     def _fit_whole(self) -> None:
         """Fit the chosen order once more, on all data."""
         assert self.best is not None
-        self._begin_part("fitting the chosen model to the whole log", 0.0, 1.0, FITS * 3)
+        self.fits.begin_part("fitting the chosen model to the whole log", 0.0, 1.0, FITS_TO_SETTLE * 3)
         if self.begin is None:
             self.best = self._retry_optima(self.best)
         windows = WindowResidual(self.logs, self.arm, self.joints, longest_step=SLICE_S)
         windows.settle(self.best.plant, self.best.zero)
-        found = self._settle(windows, self.best)
+        found = self.fits.settle(windows, self.best)
         self.best = self._fit_closed(windows, found, whole=True) if self.best.closed else found
         self.complete = True
 
@@ -380,44 +339,13 @@ class Search:
         windows = WindowResidual(self.logs, self.arm, self.joints)
         space = Space.of(self.arm, (*MOTOR, "coulomb"), self.joints)
         starts = (space.start(), space.translate(candidate.x, candidate.space))
-        simple = self._mix_blocks(windows, space, [self._fit_windows(windows, space, x, WINDOW_STEPS) for x in starts])
+        simple = self.fits.mix_blocks(windows, space, [self.fits.fit_windows(windows, space, x) for x in starts])
         names = dict(zip(space.names, simple, strict=True))
         other = np.array([names.get(name, x) for name, x in zip(candidate.space.names, candidate.x, strict=True)])
         # A joint that feels no gravity hardly shows its alpha: a difference in alpha alone is no other optimum.
         told = np.array([parameter.kind != "alpha" for parameter in candidate.space.parameters])
         if np.max(np.abs(other - candidate.x)[told]) < self._limits.other_optimum:
             return candidate
-        tried = [self._settle(windows, replace(candidate, x=x)) for x in (candidate.x, other)]
+        tried = [self.fits.settle(windows, replace(candidate, x=x)) for x in (candidate.x, other)]
         costs = np.array([cost(one, windows) for one in tried])
         return replace(candidate, x=candidate.space.mix([one.x for one in tried], costs, self.joints))
-
-    def _begin_part(self, what: str, done: float, until: float, fits: int = 1) -> None:
-        """Progress a part of the search; about so many fits take its share from `done` to `until`."""
-        self._part = what, done, until, (until - done) / fits
-        self.report(what, done)
-
-    def _fit_windows(
-        self, windows: WindowResidual, space: Space, start: Floats, steps: int, free: Flags | None = None
-    ) -> Floats:
-        """Run least squares on windows, and count what was simulated."""
-        fit = WindowFit(windows, space, start, free)
-        what, done, until, each = self._part
-        found = fit.run(steps, lambda share: self.report(what, min(until, done + each * share)))
-        self._part = what, min(until, done + each), until, each
-        self.simulations += fit.simulations
-        self.simulated += fit.simulations * windows.seconds
-        return found
-
-    def _fit(self, observed: WindowsAndLoop, space: Space, start: Floats) -> Floats:
-        """Run least squares with the user's arm as one weak observation, and count what was simulated."""
-
-        def residual(points: Floats) -> Floats:
-            return np.concatenate([observed(space, points), (points - space.start()) / space.doubts()], axis=1)
-
-        own = np.array([one.joint for one in space.parameters], dtype=np.intp)
-        moves = space.moves(np.concatenate([observed.joint_of, own]))
-        moves[len(observed.joint_of) :] = np.eye(len(space), dtype=bool)
-        found, simulations = least_squares_fit(residual, space, start, moves, LOOP_STEPS, LOOP_STEP_SCALE)
-        self.simulations += simulations
-        self.simulated += simulations * observed.seconds
-        return found

@@ -1,0 +1,98 @@
+"""Least squares of a search's models: what is fitted to which windows, counted, with the progress of it all."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from greywhale.base.types import Flags, Floats, Progress
+from greywhale.identify.candidate import Candidate, WindowsAndLoop
+from greywhale.identify.fit import least_squares_fit
+from greywhale.identify.knocking import turns_of
+from greywhale.identify.space import Space
+from greywhale.identify.steps import WindowFit
+from greywhale.identify.windows import WindowResidual
+
+WINDOW_STEPS = 20  # of a fit to windows, at most
+LOOP_STEPS = 10  # of one to windows and closed loop
+# The side of its gap from which each motor starts is chosen anew at most so often, each time for some steps of the fit.
+SETTLINGS = 4
+SETTLED_STEPS = 8
+FITS_TO_SETTLE = 3  # so many it often takes until a candidate is settled; only the share that is reported hangs on it
+# Readings come in steps, so finite differences in the closed loop are wider than in the windows.
+LOOP_STEP_SCALE = 5.0
+
+
+@dataclass
+class Fits:
+    """The fits of one search. They tell how far it is, by the part that was begun last."""
+
+    joints: Sequence[int]
+    report: Progress
+    simulations: int = 0
+    simulated: float = 0.0  # s
+    _part: tuple[str, float, float, float] = field(default=("", 0.0, 1.0, 1.0), init=False, repr=False)
+
+    def begin_part(self, what: str, done: float, until: float, fits: int = 1) -> None:
+        """Progress a part of the search; about so many fits take its share from `done` to `until`."""
+        self._part = what, done, until, (until - done) / fits
+        self.report(what, done)
+
+    def refine(
+        self, windows: WindowResidual, candidate: Candidate, steps: int = WINDOW_STEPS, free: Flags | None = None
+    ) -> Candidate:
+        return replace(candidate, x=self.fit_windows(windows, candidate.space, candidate.x, steps, free))
+
+    def settle(self, windows: WindowResidual, candidate: Candidate) -> Candidate:
+        """Fit a model's numbers in their turns."""
+        for seen, free in turns_of(windows, candidate.space, candidate.knocking):
+            if candidate.knocking:
+                seen.settle(candidate.plant, candidate.zero)
+            candidate = self._settle_turn(seen, candidate, free)
+        return candidate
+
+    def _settle_turn(self, windows: WindowResidual, found: Candidate, free: Flags) -> Candidate:
+        """Least squares and the choice of where each window starts in the gaps, in turns until that choice no longer
+        changes.
+        """
+        found = self.refine(windows, found, free=free)
+        for _ in range(SETTLINGS):
+            if not windows.settle(found.plant, found.zero):
+                break
+            found = self.refine(windows, found, SETTLED_STEPS, free)
+        return found
+
+    def mix_blocks(self, windows: WindowResidual, space: Space, fits: Sequence[Floats]) -> Floats:
+        """For each group of joints that feel each other, the numbers of the fit that is best for them: others may be
+        stuck.
+        """
+        errors = np.array([windows.mse(space.plants(x[None])[0], space.offsets(x[None])[0]) for x in fits])
+        return space.mix(fits, errors[:, list(self.joints)], self.joints)
+
+    def fit_windows(
+        self, windows: WindowResidual, space: Space, start: Floats, steps: int = WINDOW_STEPS, free: Flags | None = None
+    ) -> Floats:
+        """Run least squares on windows, and count what was simulated."""
+        fit = WindowFit(windows, space, start, free)
+        what, done, until, each = self._part
+        found = fit.run(steps, lambda share: self.report(what, min(until, done + each * share)))
+        self._part = what, min(until, done + each), until, each
+        self.simulations += fit.simulations
+        self.simulated += fit.simulations * windows.seconds
+        return found
+
+    def fit_with_loop(self, observed: WindowsAndLoop, space: Space, start: Floats) -> Floats:
+        """Run least squares with the user's arm as one weak observation, and count what was simulated."""
+
+        def residual(points: Floats) -> Floats:
+            return np.concatenate([observed(space, points), (points - space.start()) / space.doubts()], axis=1)
+
+        own = np.array([one.joint for one in space.parameters], dtype=np.intp)
+        moves = space.moves(np.concatenate([observed.joint_of, own]))
+        moves[len(observed.joint_of) :] = np.eye(len(space), dtype=bool)
+        found, simulations = least_squares_fit(residual, space, start, moves, LOOP_STEPS, LOOP_STEP_SCALE)
+        self.simulations += simulations
+        self.simulated += simulations * observed.seconds
+        return found
