@@ -47,13 +47,15 @@ struct Terms {
   T creep;       // friction per velocity of one that does
 };
 
-// What the mesh does for one choice of sides: an impulse from its present deflection, and one per closing velocity.
+// What motor and mesh do for one choice of sides.
 template <class T>
 struct Mesh {
-  T push, stiff;
-  T inertia;  // of the motor side, with what its creep resists by
-  T felt;     // share of the mesh's impulse that the motor side feels: friction grows with it
-  T share;    // of the link's velocity that a moving motor side takes on, per `felt`
+  T push, stiff;  // impulse from its present deflection, and per closing velocity
+  T inertia;      // of the motor side, with what its creep resists by
+  T felt;         // share of the mesh's impulse that the motor side feels: friction grows with it
+  T total;        // impulse per velocity of a motor side that moves
+  T share;        // of the link's velocity that a moving motor side takes on, per `felt`
+  T driven;       // impulse on the motor side, without the mesh's part that depends on velocities
 };
 
 // One row of the links' equations: what motor and mesh add to it.
@@ -70,7 +72,7 @@ constexpr double kRigid = 1e15;
 constexpr double kNoPull = 1e-14;
 
 template <bool kWorn, class T, class Time>
-Terms<T> terms_of(const Joint<T>& joint, const State<T>& s, std::size_t i, T volts, Time dt) {
+GREYWHALE_INLINE Terms<T> terms_of(const Joint<T>& joint, const State<T>& s, std::size_t i, T volts, Time dt) {
   const Gear<T>& gear = joint.gear;
   const T compliant = dt * (dt * gear.stiffness + gear.damping);
   Terms<T> t;
@@ -93,77 +95,81 @@ Terms<T> terms_of(const Joint<T>& joint, const State<T>& s, std::size_t i, T vol
   return t;
 }
 
-// Where a joint stands before the step, taken on by its present velocities.
-template <class T, class Time>
-Sides<T> first_guess(const Joint<T>& joint, const State<T>& s, std::size_t i, Time dt) {
-  const T zero = constant<T>(0.0);
-  const T one = constant<T>(1.0);
-  const T ahead = s.motor_q[i] - s.q[i] + dt * (s.motor_v[i] - s.v[i]);
-  Sides<T> side;
-  side.mesh = choose(absolute(ahead) >= joint.gear.half_gap, choose(ahead < zero, -one, one), zero);
-  side.slip = choose(absolute(s.motor_v[i]) > joint.friction.creep, sign(s.motor_v[i]), zero);
-  side.stop = choose(s.q[i] >= joint.stops.max, one, choose(s.q[i] <= joint.stops.min, -one, zero));
-  return side;
+// Not 0 where the motor side moves: while it slides, and at rest where it creeps.
+template <bool kWorn, class T>
+GREYWHALE_INLINE T moving(const Terms<T>& t, const Sides<T>& side) {
+  return kWorn ? choose(side.slip != constant<T>(0.0), side.slip, t.creeps) : side.slip;
 }
 
 template <bool kWorn, class T>
-Mesh<T> mesh_of(const Terms<T>& t, const Sides<T>& side) {
+GREYWHALE_INLINE Mesh<T> mesh_of(const Terms<T>& t, const Sides<T>& side) {
   const T zero = constant<T>(0.0);
   const auto touching = side.mesh != zero;
   Mesh<T> mesh;
   mesh.push = choose(touching, t.push - side.mesh * t.gap_push, zero);
   mesh.stiff = choose(touching, t.mesh + t.drag, t.drag);
   mesh.inertia = t.inertia;
-  T felt = mesh.stiff;
+  T felt = mesh.stiff, push = mesh.push;
   if (kWorn) {
     mesh.felt = side.slip * side.mesh * t.load + 1.0;
     mesh.inertia = choose(side.slip != zero, t.inertia, t.inertia + t.creep);
     felt = mesh.felt * mesh.stiff;
+    push = mesh.felt * mesh.push;
   }
-  mesh.share = mesh.stiff / (mesh.inertia + felt);
+  mesh.total = mesh.inertia + felt;
+  mesh.share = mesh.stiff / mesh.total;
+  mesh.driven = t.impulse - push - side.slip * t.friction;
   return mesh;
 }
 
-// Without the mesh's part that depends on velocities.
-template <bool kWorn, class T>
-T driving_impulse(const Terms<T>& t, const Sides<T>& side, const Mesh<T>& mesh) {
-  const T push = kWorn ? mesh.felt * mesh.push : mesh.push;
-  return t.impulse - push - side.slip * t.friction;
-}
-
-// Not 0 where the motor side moves: while it slides, and at rest where it creeps.
-template <bool kWorn, class T>
-T moving(const Terms<T>& t, const Sides<T>& side) {
-  return kWorn ? choose(side.slip != constant<T>(0.0), side.slip, t.creeps) : side.slip;
+// Where a joint stands before the step, taken on by its present velocities. A shaft that slides goes on unless friction
+// stops it on the way; one that rests starts where more than its breakaway torque is needed to keep it.
+template <bool kWorn, class T, class Time>
+GREYWHALE_INLINE Sides<T> first_guess(const Joint<T>& joint, const Terms<T>& t, const State<T>& s, std::size_t i,
+                                      Time dt) {
+  const T zero = constant<T>(0.0);
+  const T one = constant<T>(1.0);
+  const T ahead = t.deflection + dt * (s.motor_v[i] - s.v[i]);
+  Sides<T> side;
+  side.mesh = choose(absolute(ahead) >= joint.gear.half_gap, choose(ahead < zero, -one, one), zero);
+  side.stop = choose(s.q[i] >= joint.stops.max, one, choose(s.q[i] <= joint.stops.min, -one, zero));
+  const auto touching = side.mesh != zero;
+  const T push = choose(touching, t.push - side.mesh * t.gap_push, zero);
+  const T passed = push - choose(touching, t.mesh + t.drag, t.drag) * s.v[i];
+  const T needed = t.impulse - passed;
+  T friction = t.friction, breakaway = t.breakaway;
+  if (kWorn) {
+    const T more = t.load * absolute(passed);
+    friction = friction + more;
+    breakaway = breakaway + more;
+  }
+  const T slides = choose(absolute(s.motor_v[i]) > joint.friction.creep, sign(s.motor_v[i]), zero);
+  const T starts = choose(absolute(needed) > breakaway, sign(needed), zero);
+  side.slip = choose(slides * needed > absolute(slides) * friction, slides, starts);
+  return side;
 }
 
 // A motor side at rest holds the link through the mesh alone; a moving one goes with it by `share`.
 template <bool kWorn, class T>
-Row<T> link_row(const Terms<T>& t, const Sides<T>& side) {
-  const Mesh<T> mesh = mesh_of<kWorn>(t, side);
+GREYWHALE_INLINE Row<T> link_row(const Terms<T>& t, const Sides<T>& side, const Mesh<T>& mesh) {
   const auto moves = moving<kWorn>(t, side) != constant<T>(0.0);
-  const T driven = driving_impulse<kWorn>(t, side, mesh);
   Row<T> row;
   row.diagonal = choose(moves, mesh.share * mesh.inertia, mesh.stiff);
-  row.right = choose(moves, mesh.push + mesh.share * driven, mesh.push);
+  row.right = choose(moves, mesh.push + mesh.share * mesh.driven, mesh.push);
   return row;
 }
 
 template <bool kWorn, class T>
-T motor_velocity(const Terms<T>& t, const Sides<T>& side, T link_v) {
-  const Mesh<T> mesh = mesh_of<kWorn>(t, side);
+GREYWHALE_INLINE T motor_velocity(const Terms<T>& t, const Sides<T>& side, const Mesh<T>& mesh, T link_v) {
   const auto moves = moving<kWorn>(t, side) != constant<T>(0.0);
-  const T driven = driving_impulse<kWorn>(t, side, mesh);
-  const T felt = kWorn ? mesh.felt * mesh.stiff : mesh.stiff;
   const T share = kWorn ? mesh.felt * mesh.share : mesh.share;
-  return choose(moves, driven / (mesh.inertia + felt) + share * link_v, constant<T>(0.0));
+  return choose(moves, mesh.driven / mesh.total + share * link_v, constant<T>(0.0));
 }
 
 // What the mesh passes on over the step; taken from what is left of the motor's own impulse where it moves, since a
 // rigid mesh shows nothing.
 template <class T>
-T passed_impulse(const Terms<T>& t, const Sides<T>& side, T motor_v, T link_v) {
-  const Mesh<T> mesh = mesh_of<true>(t, side);
+GREYWHALE_INLINE T passed_impulse(const Terms<T>& t, const Sides<T>& side, const Mesh<T>& mesh, T motor_v, T link_v) {
   const auto moves = moving<true>(t, side) != constant<T>(0.0);
   const T left = t.impulse - side.slip * t.friction - mesh.inertia * motor_v;
   return choose(moves, left / mesh.felt, mesh.push - mesh.stiff * link_v);
@@ -171,7 +177,7 @@ T passed_impulse(const Terms<T>& t, const Sides<T>& side, T motor_v, T link_v) {
 
 // Teeth push and never pull. Apart, they meet on the side where the gap would close and the mesh would push.
 template <class T, class Time>
-T corrected_mesh(const Gear<T>& gear, const Terms<T>& t, T side, T closing, Time dt) {
+GREYWHALE_INLINE T corrected_mesh(const Gear<T>& gear, const Terms<T>& t, T side, T closing, Time dt) {
   const T zero = constant<T>(0.0);
   const T one = constant<T>(1.0);
   const T push = t.push + t.mesh * closing;
@@ -184,7 +190,7 @@ T corrected_mesh(const Gear<T>& gear, const Terms<T>& t, T side, T closing, Time
 
 // Where there is no gap, the side says which way the mesh pushes; only friction that grows with the load asks for it.
 template <class T>
-T corrected_gapless(const Gear<T>& gear, const Terms<T>& t, T side, T passed) {
+GREYWHALE_INLINE T corrected_gapless(const Gear<T>& gear, const Terms<T>& t, T side, T passed) {
   const T zero = constant<T>(0.0);
   const T turned = choose(side * passed < constant<T>(-kNoPull), -side, side);
   return choose(t.load > zero, choose(gear.half_gap > zero, side, turned), side);
@@ -192,9 +198,8 @@ T corrected_gapless(const Gear<T>& gear, const Terms<T>& t, T side, T passed) {
 
 // Sliding ends where it would reverse; rest ends where more than the breakaway torque is needed to keep it.
 template <class T>
-T corrected_slip(const Terms<T>& t, const Sides<T>& side, T motor_v, T closing) {
+GREYWHALE_INLINE T corrected_slip(const Terms<T>& t, const Sides<T>& side, const Mesh<T>& mesh, T motor_v, T closing) {
   const T zero = constant<T>(0.0);
-  const Mesh<T> mesh = mesh_of<false>(t, side);
   const T needed = t.impulse - mesh.push - mesh.stiff * closing;
   const T starts = choose(absolute(needed) > t.breakaway, sign(needed), zero);
   const T stays = choose(side.slip * motor_v < zero, zero, side.slip);
@@ -203,7 +208,8 @@ T corrected_slip(const Terms<T>& t, const Sides<T>& side, T motor_v, T closing) 
 
 // The same with friction that grows with the load. Sliding also ends where it gets as slow as creep.
 template <class T>
-T corrected_worn_slip(const Friction<T>& friction, const Terms<T>& t, const Sides<T>& side, T motor_v, T passed) {
+GREYWHALE_INLINE T corrected_worn_slip(const Friction<T>& friction, const Terms<T>& t, const Sides<T>& side, T motor_v,
+                                       T passed) {
   const T zero = constant<T>(0.0);
   const T needed = t.impulse - passed - t.inertia * motor_v;
   const T starts = choose(absolute(needed) > t.breakaway + t.load * absolute(passed), sign(needed), zero);
@@ -213,7 +219,7 @@ T corrected_worn_slip(const Friction<T>& friction, const Terms<T>& t, const Side
 
 // A stop holds a link that would pass it and lets go of one that it would have to pull, unless there is no room to go.
 template <class T>
-T corrected_stop(const Stops<T>& stops, T side, T reached, T stop_impulse) {
+GREYWHALE_INLINE T corrected_stop(const Stops<T>& stops, T side, T reached, T stop_impulse) {
   const T zero = constant<T>(0.0);
   const T one = constant<T>(1.0);
   const T arrives = choose(reached > stops.max, one, choose(reached < stops.min, -one, zero));

@@ -9,7 +9,7 @@ namespace greywhale::arm {
 // Coulomb friction with the Stribeck excess in Hess and Soom's rational form: no exponential, and it is the breakaway
 // torque at rest.
 template <class T>
-T friction_torque(const Friction<T>& friction, T velocity) {
+GREYWHALE_INLINE T friction_torque(const Friction<T>& friction, T velocity) {
   const T ratio = velocity / friction.stribeck_velocity;
   return friction.coulomb + (friction.breakaway - friction.coulomb) / (1.0 + ratio * ratio);
 }

@@ -1,4 +1,4 @@
-// The links' equations of one step: two pairs of coupled joints, yaw with roll and shoulder with wrist.
+// The links' equations of one step for a pair of coupled joints: yaw with roll, or shoulder with wrist.
 #pragma once
 
 #include "conditions.h"
@@ -9,58 +9,56 @@ namespace greywhale::arm {
 
 template <class T>
 struct LinearSystem {
-  Row<T> rows[kJoints];
-  T coupling03, coupling12;
+  Row<T> rows[2];
+  T coupling;
 };
 
 template <bool kWorn, class T>
-LinearSystem<T> linear_system(const MassMatrix<T>& m, const T (&momentum)[kJoints], const Terms<T> (&terms)[kJoints],
-                              const Sides<T> (&sides)[kJoints]) {
-  const T inertia[kJoints] = {m.m00, m.m11, m.m22, m.m33};
+GREYWHALE_INLINE LinearSystem<T> linear_system(const T (&inertia)[2], T coupling, const T (&momentum)[2],
+                                               const Terms<T> (&terms)[2], const Sides<T> (&sides)[2],
+                                               const Mesh<T> (&meshes)[2]) {
   LinearSystem<T> system;
-  for (std::size_t i = 0; i < kJoints; ++i) {
-    const Row<T> added = link_row<kWorn>(terms[i], sides[i]);
-    system.rows[i] = {inertia[i] + added.diagonal, momentum[i] + added.right};
+  for (std::size_t n = 0; n < 2; ++n) {
+    const Row<T> added = link_row<kWorn>(terms[n], sides[n], meshes[n]);
+    system.rows[n] = {inertia[n] + added.diagonal, momentum[n] + added.right};
   }
-  system.coupling03 = m.m03;
-  system.coupling12 = m.m12;
+  system.coupling = coupling;
   return system;
 }
 
-// One pair, by Cramer's rule; a link that its stop holds has its velocity given instead.
+// By Cramer's rule.
 template <class T>
-void solve_pair(const LinearSystem<T>& system, T coupling, std::size_t i, std::size_t j,
-                const Sides<T> (&sides)[kJoints], const T (&given)[kJoints], T (&v)[kJoints]) {
-  const T zero = constant<T>(0.0);
-  const T one = constant<T>(1.0);
-  const auto held_i = sides[i].stop != zero;
-  const auto held_j = sides[j].stop != zero;
-  const T ii = choose(held_i, one, system.rows[i].diagonal);
-  const T ij = choose(held_i, zero, coupling);
-  const T ir = choose(held_i, given[i], system.rows[i].right);
-  const T jj = choose(held_j, one, system.rows[j].diagonal);
-  const T ji = choose(held_j, zero, coupling);
-  const T jr = choose(held_j, given[j], system.rows[j].right);
-  const T scale = 1.0 / (ii * jj - ij * ji);
-  v[i] = (jj * ir - ij * jr) * scale;
-  v[j] = (ii * jr - ji * ir) * scale;
+GREYWHALE_INLINE void solve_free(const LinearSystem<T>& system, T (&v)[2]) {
+  const Row<T>&a = system.rows[0], &b = system.rows[1];
+  const T scale = 1.0 / (a.diagonal * b.diagonal - system.coupling * system.coupling);
+  v[0] = (b.diagonal * a.right - system.coupling * b.right) * scale;
+  v[1] = (a.diagonal * b.right - system.coupling * a.right) * scale;
 }
 
+// The same where a stop may hold a link: it has its velocity given instead.
 template <class T>
-void solve(const LinearSystem<T>& system, const Sides<T> (&sides)[kJoints], const T (&given)[kJoints],
-           T (&v)[kJoints]) {
-  solve_pair(system, system.coupling03, 0, 3, sides, given, v);
-  solve_pair(system, system.coupling12, 1, 2, sides, given, v);
+void solve(const LinearSystem<T>& system, const Sides<T> (&sides)[2], const T (&given)[2], T (&v)[2]) {
+  const T zero = constant<T>(0.0);
+  const T one = constant<T>(1.0);
+  const auto held_i = sides[0].stop != zero;
+  const auto held_j = sides[1].stop != zero;
+  const T ii = choose(held_i, one, system.rows[0].diagonal);
+  const T ij = choose(held_i, zero, system.coupling);
+  const T ir = choose(held_i, given[0], system.rows[0].right);
+  const T jj = choose(held_j, one, system.rows[1].diagonal);
+  const T ji = choose(held_j, zero, system.coupling);
+  const T jr = choose(held_j, given[1], system.rows[1].right);
+  const T scale = 1.0 / (ii * jj - ij * ji);
+  v[0] = (jj * ir - ij * jr) * scale;
+  v[1] = (ii * jr - ji * ir) * scale;
 }
 
 // The impulse each stop must supply to keep its link's given velocity.
 template <class T>
-void stop_impulses(const LinearSystem<T>& system, const T (&v)[kJoints], T (&impulse)[kJoints]) {
-  const Row<T>(&r)[kJoints] = system.rows;
-  impulse[0] = r[0].diagonal * v[0] + system.coupling03 * v[3] - r[0].right;
-  impulse[1] = r[1].diagonal * v[1] + system.coupling12 * v[2] - r[1].right;
-  impulse[2] = system.coupling12 * v[1] + r[2].diagonal * v[2] - r[2].right;
-  impulse[3] = system.coupling03 * v[0] + r[3].diagonal * v[3] - r[3].right;
+void stop_impulses(const LinearSystem<T>& system, const T (&v)[2], T (&impulse)[2]) {
+  const Row<T>(&r)[2] = system.rows;
+  impulse[0] = r[0].diagonal * v[0] + system.coupling * v[1] - r[0].right;
+  impulse[1] = system.coupling * v[0] + r[1].diagonal * v[1] - r[1].right;
 }
 
 }  // namespace greywhale::arm

@@ -15,22 +15,23 @@ constexpr T constant(double value) {
 
 // The wrapper around ?: that also takes a lane-wise mask (GCC's vector ?: needs vectors on both sides).
 template <class Mask, class T>
-T choose(Mask mask, T yes, T no) {
+GREYWHALE_INLINE T choose(Mask mask, T yes, T no) {
   return mask ? yes : no;
 }
 
 template <class T>
-T absolute(T value) {
+GREYWHALE_INLINE T absolute(T value) {
   return choose(value < constant<T>(0.0), -value, value);
 }
 
 // -1, 0 or +1, in the number type itself: sides and directions multiply straight into the equations.
 template <class T>
-T sign(T value) {
+GREYWHALE_INLINE T sign(T value) {
   const T zero = constant<T>(0.0);
   return choose(value > zero, constant<T>(1.0), choose(value < zero, constant<T>(-1.0), zero));
 }
 
 inline bool any(bool mask) { return mask; }
+inline bool either(bool one, bool other) { return one || other; }
 
 }  // namespace greywhale::arm

@@ -4,9 +4,9 @@
 // and the link side. The gear mesh between them is a spring and damper with a dead zone. Everything stiff is taken at
 // the end of the step (implicit Euler in the velocities): motor damping, mesh, friction, stops. Velocity terms and
 // gravity are taken at its start. The step is linear once it is known which teeth touch, which shafts slide and which
-// stops hold, and that is found by trying: solve, correct, solve again. The conditions are monotone, so this ends,
-// nearly always within two passes; a step that does not settle is counted. All of it works lane by lane when T is a
-// vector type.
+// stops hold, and that is found by trying, for each pair of joints that feel each other: solve, correct, solve again.
+// The conditions are monotone, so this ends, mostly in the first pass; a step that does not settle is counted. All of
+// it works lane by lane when T is a vector type.
 #pragma once
 
 #include <cstddef>
@@ -29,43 +29,113 @@ constexpr int kPasses = 8;
 
 namespace detail {
 
-// Corrects all sides by the velocities found with them; true when nothing changed.
+// The links of two joints that feel each other, before motors and gears are added.
+template <class T>
+struct Links {
+  T inertia[2], coupling, momentum[2];
+};
+
+template <class T>
+GREYWHALE_INLINE bool is_held(const Sides<T> (&sides)[2]) {
+  const T zero = constant<T>(0.0);
+  return any(either(sides[0].stop != zero, sides[1].stop != zero));
+}
+
+template <class T>
+GREYWHALE_INLINE auto is_beyond(const Stops<T>& stops, T q) {
+  return either(q > stops.max, q < stops.min);
+}
+
+// Corrects the sides of mesh and friction by the velocities found with them; where they changed.
 template <bool kWorn, class T, class Time>
-bool settle(const Plant<T>& plant, const State<T>& s, const Terms<T> (&terms)[kJoints], const LinearSystem<T>& system,
-            const T (&v)[kJoints], Time dt, Sides<T> (&sides)[kJoints]) {
-  T impulses[kJoints];
-  stop_impulses(system, v, impulses);
-  bool settled = true;
-  for (std::size_t i = 0; i < kJoints; ++i) {
-    const Joint<T>& joint = plant.joints[i];
-    const Sides<T> side = sides[i];
-    const T motor_v = motor_velocity<kWorn>(terms[i], side, v[i]);
-    const T closing = motor_v - v[i];
-    sides[i].mesh = corrected_mesh(joint.gear, terms[i], side.mesh, closing, dt);
-    if (kWorn) {
-      const T passed = passed_impulse(terms[i], side, motor_v, v[i]);
-      sides[i].mesh = corrected_gapless(joint.gear, terms[i], sides[i].mesh, passed);
-      sides[i].slip = corrected_worn_slip(joint.friction, terms[i], side, motor_v, passed);
-    } else {
-      sides[i].slip = corrected_slip(terms[i], side, motor_v, closing);
-    }
-    sides[i].stop = corrected_stop(joint.stops, side.stop, s.q[i] + dt * v[i], impulses[i]);
-    const bool changed =
-        any(sides[i].mesh != side.mesh) || any(sides[i].slip != side.slip) || any(sides[i].stop != side.stop);
-    settled = settled && !changed;
+GREYWHALE_INLINE auto settle(const Joint<T>& joint, const Terms<T>& t, const Mesh<T>& mesh, T motor_v, T v, Time dt,
+                             Sides<T>& sides) {
+  const Sides<T> side = sides;
+  const T closing = motor_v - v;
+  sides.mesh = corrected_mesh(joint.gear, t, side.mesh, closing, dt);
+  if (kWorn) {
+    const T passed = passed_impulse(t, side, mesh, motor_v, v);
+    sides.mesh = corrected_gapless(joint.gear, t, sides.mesh, passed);
+    sides.slip = corrected_worn_slip(joint.friction, t, side, motor_v, passed);
+  } else {
+    sides.slip = corrected_slip(t, side, mesh, motor_v, closing);
   }
+  return either(sides.mesh != side.mesh, sides.slip != side.slip);
+}
+
+// The same of stops, which are rarely met; true when nothing changed.
+template <class T, class Time>
+bool settle_stops(const Stops<T>& one, const Stops<T>& other, const LinearSystem<T>& system, const T (&q)[2],
+                  const T (&v)[2], Time dt, Sides<T> (&sides)[2]) {
+  T impulses[2];
+  stop_impulses(system, v, impulses);
+  const T first = corrected_stop(one, sides[0].stop, q[0] + dt * v[0], impulses[0]);
+  const T second = corrected_stop(other, sides[1].stop, q[1] + dt * v[1], impulses[1]);
+  const bool settled = !any(either(first != sides[0].stop, second != sides[1].stop));
+  sides[0].stop = first;
+  sides[1].stop = second;
   return settled;
 }
 
-// Impact is inelastic: a link is at rest when it has arrived at its stop, and its neighbour feels all of that blow.
-template <class T>
-void rest_at_stops(const LinearSystem<T>& system, const Sides<T> (&sides)[kJoints], T (&v)[kJoints]) {
+// A link that a stop holds is there exactly at the end of the step.
+template <class T, class Time>
+void solve_held(const Stops<T>& one, const Stops<T>& other, const LinearSystem<T>& system, const T (&q)[2],
+                const Sides<T> (&sides)[2], Time dt, T (&v)[2]) {
   const T zero = constant<T>(0.0);
-  const T rest[kJoints] = {zero, zero, zero, zero};
-  if (any(sides[0].stop != zero) || any(sides[1].stop != zero) || any(sides[2].stop != zero) ||
-      any(sides[3].stop != zero)) {
-    solve(system, sides, rest, v);
+  const T arriving[2] = {(choose(sides[0].stop > zero, one.max, one.min) - q[0]) / dt,
+                         (choose(sides[1].stop > zero, other.max, other.min) - q[1]) / dt};
+  solve(system, sides, arriving, v);
+}
+
+// Joints `a` and `b`: the other two feel nothing of them within a step.
+template <bool kWorn, class T, class Time>
+GREYWHALE_INLINE bool advance_pair(const Plant<T>& plant, State<T>& s, std::size_t a, std::size_t b,
+                                   const Links<T>& links, const T (&volts)[kJoints], Time dt) {
+  const std::size_t joints[2] = {a, b};
+  const Joint<T>&one = plant.joints[a], &other = plant.joints[b];
+  const T q[2] = {s.q[a], s.q[b]};
+  const Terms<T> terms[2] = {terms_of<kWorn>(one, s, a, volts[a], dt), terms_of<kWorn>(other, s, b, volts[b], dt)};
+  Sides<T> sides[2] = {first_guess<kWorn>(one, terms[0], s, a, dt), first_guess<kWorn>(other, terms[1], s, b, dt)};
+  Sides<T> used[2];
+  Mesh<T> meshes[2];
+  LinearSystem<T> system;
+  T v[2], motor_v[2];
+  bool settled = false, held = false;
+  for (int pass = 0; pass < kPasses && !settled; ++pass) {
+    for (std::size_t n = 0; n < 2; ++n) {
+      meshes[n] = mesh_of<kWorn>(terms[n], sides[n]);
+      used[n] = sides[n];
+    }
+    system = linear_system<kWorn>(links.inertia, links.coupling, links.momentum, terms, sides, meshes);
+    held = is_held(sides);
+    if (held) {
+      solve_held(one.stops, other.stops, system, q, used, dt, v);
+    } else {
+      solve_free(system, v);
+    }
+    for (std::size_t n = 0; n < 2; ++n) motor_v[n] = motor_velocity<kWorn>(terms[n], used[n], meshes[n], v[n]);
+    settled = !any(either(settle<kWorn>(one, terms[0], meshes[0], motor_v[0], v[0], dt, sides[0]),
+                          settle<kWorn>(other, terms[1], meshes[1], motor_v[1], v[1], dt, sides[1])));
+    if (held || any(either(is_beyond(one.stops, q[0] + dt * v[0]), is_beyond(other.stops, q[1] + dt * v[1]))))
+      settled = settle_stops(one.stops, other.stops, system, q, v, dt, sides) && settled;
   }
+  for (std::size_t n = 0; n < 2; ++n) {
+    const Stops<T>& stops = plant.joints[joints[n]].stops;
+    const T reached = q[n] + dt * v[n];
+    s.q[joints[n]] = choose(reached > stops.max, stops.max, choose(reached < stops.min, stops.min, reached));
+    s.motor_q[joints[n]] = s.motor_q[joints[n]] + dt * motor_v[n];
+  }
+  if (held) {
+    // Impact is inelastic: a link is at rest when it has arrived at its stop, and its neighbour feels all of that blow.
+    const T rest[2] = {constant<T>(0.0), constant<T>(0.0)};
+    solve(system, used, rest, v);
+    for (std::size_t n = 0; n < 2; ++n) motor_v[n] = motor_velocity<kWorn>(terms[n], used[n], meshes[n], v[n]);
+  }
+  for (std::size_t n = 0; n < 2; ++n) {
+    s.motor_v[joints[n]] = choose(used[n].slip * motor_v[n] < constant<T>(0.0), constant<T>(0.0), motor_v[n]);
+    s.v[joints[n]] = v[n];
+  }
+  return settled;
 }
 
 template <bool kWorn, class T, class Time>
@@ -75,44 +145,13 @@ bool advance(const Plant<T>& plant, State<T>& s, const T (&volts)[kJoints], cons
   bias_torque(geometry, s.v, bias);
   T momentum[kJoints];
   momentum_of(geometry.mass, s.v, momentum);
-
-  Terms<T> terms[kJoints];
-  Sides<T> sides[kJoints];
-  for (std::size_t i = 0; i < kJoints; ++i) {
-    terms[i] = terms_of<kWorn>(plant.joints[i], s, i, volts[i], dt);
-    sides[i] = first_guess(plant.joints[i], s, i, dt);
-    momentum[i] = momentum[i] + dt * (load[i] - bias[i]);
-  }
-
-  LinearSystem<T> system;
-  Sides<T> used[kJoints];
-  T v[kJoints];
-  bool settled = false;
-  for (int pass = 0; pass < kPasses && !settled; ++pass) {
-    system = linear_system<kWorn>(geometry.mass, momentum, terms, sides);
-    T arriving[kJoints];  // at its stop exactly at the end of the step
-    for (std::size_t i = 0; i < kJoints; ++i) {
-      const Stops<T>& stops = plant.joints[i].stops;
-      arriving[i] = (choose(sides[i].stop > constant<T>(0.0), stops.max, stops.min) - s.q[i]) / dt;
-      used[i] = sides[i];
-    }
-    solve(system, used, arriving, v);
-    settled = detail::settle<kWorn>(plant, s, terms, system, v, dt, sides);
-  }
-
-  for (std::size_t i = 0; i < kJoints; ++i) {
-    const Stops<T>& stops = plant.joints[i].stops;
-    const T reached = s.q[i] + dt * v[i];
-    s.q[i] = choose(reached > stops.max, stops.max, choose(reached < stops.min, stops.min, reached));
-    s.motor_q[i] = s.motor_q[i] + dt * motor_velocity<kWorn>(terms[i], used[i], v[i]);
-  }
-  detail::rest_at_stops(system, used, v);
-  for (std::size_t i = 0; i < kJoints; ++i) {
-    const T motor_v = motor_velocity<kWorn>(terms[i], used[i], v[i]);
-    s.motor_v[i] = choose(used[i].slip * motor_v < constant<T>(0.0), constant<T>(0.0), motor_v);
-    s.v[i] = v[i];
-  }
-  return settled;
+  for (std::size_t i = 0; i < kJoints; ++i) momentum[i] = momentum[i] + dt * (load[i] - bias[i]);
+  const MassMatrix<T>& m = geometry.mass;
+  const bool turned =
+      advance_pair<kWorn>(plant, s, 0, 3, Links<T>{{m.m00, m.m33}, m.m03, {momentum[0], momentum[3]}}, volts, dt);
+  const bool pitched =
+      advance_pair<kWorn>(plant, s, 1, 2, Links<T>{{m.m11, m.m22}, m.m12, {momentum[1], momentum[2]}}, volts, dt);
+  return turned && pitched;
 }
 
 }  // namespace detail

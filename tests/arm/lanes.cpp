@@ -18,6 +18,7 @@ inline bool any(Mask mask) {
   }
   return false;
 }
+inline Mask either(Mask one, Mask other) { return one | other; }
 
 }  // namespace greywhale::arm
 

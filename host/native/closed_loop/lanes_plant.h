@@ -92,6 +92,25 @@ struct Trial {
   Float mesh, slip, stop;
 };
 
+// `first_guess` of conditions.h.
+template <bool kWorn>
+GREYWHALE_INLINE Float first_slip(const Joint& j, const State& s, const Trial& t) {
+  const Float zero = all(0.0f);
+  const Mask touching = t.mesh != zero;
+  const Float push = choose(touching, t.push - t.mesh * j.gap_push, zero);
+  const Float passed = push - choose(touching, j.stiff[1], j.stiff[0]) * s.v;
+  const Float needed = t.impulse - passed;
+  Float friction = t.friction, breakaway = j.breakaway, slides = sign(s.motor_v);
+  if (kWorn) {
+    const Float more = j.load * absolute(passed);
+    friction = friction + more;
+    breakaway = breakaway + more;
+    slides = choose(absolute(s.motor_v) > j.creep_velocity, slides, zero);
+  }
+  const Float starts = choose(absolute(needed) > breakaway, sign(needed), zero);
+  return choose(slides * needed > absolute(slides) * friction, slides, starts);
+}
+
 template <bool kWorn>
 GREYWHALE_INLINE Trial first_trial(const Plant& plant, const Joint& j, const State& s, Float duty) {
   const Float ratio = s.motor_v * j.per_stribeck_velocity;
@@ -102,8 +121,7 @@ GREYWHALE_INLINE Trial first_trial(const Plant& plant, const Joint& j, const Sta
   const Float ahead = s.lead + plant.step * (s.motor_v - s.v);
   const Float side = choose(ahead < all(0.0f), all(-1.0f), all(1.0f));
   t.mesh = choose(absolute(ahead) >= j.gap, side, all(0.0f));
-  t.slip = sign(s.motor_v);
-  if (kWorn) t.slip = choose(absolute(s.motor_v) > j.creep_velocity, t.slip, all(0.0f));
+  t.slip = first_slip<kWorn>(j, s, t);
   t.stop = choose(s.q >= j.stop_max, all(1.0f), choose(j.stop_min >= s.q, all(-1.0f), all(0.0f)));
   return t;
 }

@@ -21,10 +21,16 @@ constexpr std::size_t kLanes = 2;
 
 typedef double Vector __attribute__((vector_size(kLanes * sizeof(double))));
 
-// Lanes of all ones or zeros.
+// A choice for each lane: a bit each, or lanes of all ones or zeros.
+#ifdef __AVX512F__
+struct Condition {
+  __mmask8 v;
+};
+#else
 struct Condition {
   decltype(Vector{} < Vector{}) v;
 };
+#endif
 
 // A class of this namespace, so that all that the arm's templates become with it belongs to this namespace too.
 struct Lanes {
@@ -41,23 +47,37 @@ struct Lanes {
   friend GREYWHALE_INLINE Lanes operator-(Lanes a, Lanes b) { return a.v - b.v; }
   friend GREYWHALE_INLINE Lanes operator*(Lanes a, Lanes b) { return a.v * b.v; }
   friend GREYWHALE_INLINE Lanes operator/(Lanes a, Lanes b) { return a.v / b.v; }
+#ifdef __AVX512F__
+  template <int kHow>
+  static GREYWHALE_INLINE Condition compare(Lanes a, Lanes b) {
+    return {_mm512_cmp_pd_mask(a.v, b.v, kHow)};
+  }
+  friend GREYWHALE_INLINE Condition operator<(Lanes a, Lanes b) { return compare<_CMP_LT_OQ>(a, b); }
+  friend GREYWHALE_INLINE Condition operator>(Lanes a, Lanes b) { return compare<_CMP_GT_OQ>(a, b); }
+  friend GREYWHALE_INLINE Condition operator<=(Lanes a, Lanes b) { return compare<_CMP_LE_OQ>(a, b); }
+  friend GREYWHALE_INLINE Condition operator>=(Lanes a, Lanes b) { return compare<_CMP_GE_OQ>(a, b); }
+  friend GREYWHALE_INLINE Condition operator!=(Lanes a, Lanes b) { return compare<_CMP_NEQ_UQ>(a, b); }
+#else
   friend GREYWHALE_INLINE Condition operator<(Lanes a, Lanes b) { return {a.v < b.v}; }
   friend GREYWHALE_INLINE Condition operator>(Lanes a, Lanes b) { return {a.v > b.v}; }
   friend GREYWHALE_INLINE Condition operator<=(Lanes a, Lanes b) { return {a.v <= b.v}; }
   friend GREYWHALE_INLINE Condition operator>=(Lanes a, Lanes b) { return {a.v >= b.v}; }
   friend GREYWHALE_INLINE Condition operator!=(Lanes a, Lanes b) { return {a.v != b.v}; }
+#endif
 };
 
-GREYWHALE_INLINE Lanes choose(Condition mask, Lanes yes, Lanes no) { return mask.v ? yes.v : no.v; }
-
-GREYWHALE_INLINE bool any(Condition mask) {
 #if defined(__AVX512F__)
-  return _mm512_movepi64_mask(reinterpret_cast<__m512i>(mask.v)) != 0;
-#elif defined(__AVX2__)
-  return _mm256_movemask_pd(reinterpret_cast<__m256d>(mask.v)) != 0;
+GREYWHALE_INLINE Lanes choose(Condition mask, Lanes yes, Lanes no) { return _mm512_mask_blend_pd(mask.v, no.v, yes.v); }
+GREYWHALE_INLINE Condition either(Condition one, Condition other) { return {static_cast<__mmask8>(one.v | other.v)}; }
+GREYWHALE_INLINE bool any(Condition mask) { return mask.v != 0; }
 #else
-  return (mask.v[0] | mask.v[1]) != 0;
+GREYWHALE_INLINE Lanes choose(Condition mask, Lanes yes, Lanes no) { return mask.v ? yes.v : no.v; }
+GREYWHALE_INLINE Condition either(Condition one, Condition other) { return {one.v | other.v}; }
+#ifdef __AVX2__
+GREYWHALE_INLINE bool any(Condition mask) { return _mm256_movemask_pd(reinterpret_cast<__m256d>(mask.v)) != 0; }
+#else
+GREYWHALE_INLINE bool any(Condition mask) { return (mask.v[0] | mask.v[1]) != 0; }
 #endif
-}
+#endif
 
 }  // namespace greywhale::windows::GREYWHALE_INSTRUCTIONS
