@@ -139,6 +139,26 @@ GREYWHALE_INLINE bool advance_pair(const Plant<T>& plant, State<T>& s, std::size
 }
 
 template <bool kWorn, class T, class Time>
+void advance_motors(const Plant<T>& plant, State<T>& s, const T (&volts)[kJoints], Time dt) {
+  for (std::size_t i = 0; i < kJoints; ++i) {
+    const Joint<T>& joint = plant.joints[i];
+    const Terms<T> terms = terms_of<kWorn>(joint, s, i, volts[i], dt);
+    Sides<T> sides = first_guess<kWorn>(joint, terms, s, i, dt), used;
+    T motor_v;
+    bool settled = false;
+    for (int pass = 0; pass < kPasses && !settled; ++pass) {
+      used = sides;
+      const Mesh<T> mesh = mesh_of<kWorn>(terms, used);
+      motor_v = motor_velocity<kWorn>(terms, used, mesh, s.v[i]);
+      settled = !any(settle<kWorn>(joint, terms, mesh, motor_v, s.v[i], dt, sides));
+    }
+    s.q[i] = s.q[i] + dt * s.v[i];
+    s.motor_q[i] = s.motor_q[i] + dt * motor_v;
+    s.motor_v[i] = choose(used.slip * motor_v < constant<T>(0.0), constant<T>(0.0), motor_v);
+  }
+}
+
+template <bool kWorn, class T, class Time>
 bool advance(const Plant<T>& plant, State<T>& s, const T (&volts)[kJoints], const T (&load)[kJoints], Time dt) {
   const Geometry<T> geometry = geometry_of(plant.body, pose_of<T>(s.q[1], s.q[2]));
   T bias[kJoints];
@@ -173,6 +193,12 @@ template <class T, class Time>
 bool advance(const Plant<T>& plant, State<T>& s, const T (&volts)[kJoints], const T (&load)[kJoints], Time dt,
              bool worn) {
   return worn ? detail::advance<true>(plant, s, volts, load, dt) : detail::advance<false>(plant, s, volts, load, dt);
+}
+
+// The motors alone, while something else moves the links at the velocities that they have.
+template <class T, class Time>
+void advance_motors(const Plant<T>& plant, State<T>& s, const T (&volts)[kJoints], Time dt, bool worn) {
+  worn ? detail::advance_motors<true>(plant, s, volts, dt) : detail::advance_motors<false>(plant, s, volts, dt);
 }
 
 }  // namespace greywhale::arm

@@ -51,9 +51,13 @@ class Run {
       std::size_t at[kLanes];
       for (std::size_t n = 0; n < kLanes; ++n) at[n] = first_[n] + row;
       const Lanes dt = step_of(at);
+      if (plays_ && any(dt != seen_dt_)) prepare_look(dt);
       for (std::size_t step = 0; step < w_.substeps; ++step) {
-        drive(row_.plant, at, step, dt);
-        if (plays_) look(dt);
+        const Lanes no_load[kJoints] = {};
+        Lanes volts[kJoints];
+        arrive(at, step, volts);
+        arm::advance(row_.plant, s_, volts, no_load, dt, worn_);
+        if (plays_) look();
       }
     }
   }
@@ -94,8 +98,6 @@ class Run {
   // The motors before a window, while the log leads the links: this tells where in its gap a motor stands when the
   // window begins, how far its teeth bend, and how fast it is.
   void lead() {
-    arm::Plant<Lanes> held = row_.plant;
-    hold(held.body);
     std::size_t rows = 0;
     for (std::size_t n = 0; n < kLanes; ++n) {
       rows = std::max(rows, led_[n]);
@@ -113,24 +115,12 @@ class Run {
         follow_log(n, at[n]);
       }
       const Lanes dt = step_of(at);
-      for (std::size_t step = 0; step < w_.substeps; ++step) drive(held, at, step, dt);
+      for (std::size_t step = 0; step < w_.substeps; ++step) {
+        Lanes volts[kJoints];
+        arrive(at, step, volts);
+        arm::advance_motors(row_.plant, s_, volts, dt, worn_);
+      }
     }
-  }
-
-  // Links so heavy that nothing but the log moves them.
-  static void hold(arm::RigidBody<Lanes>& body) {
-    const Lanes heavy(1e6), none(0.0);
-    body = {body.yaw * heavy,
-            body.ixx1 * heavy,
-            body.iyy1 * heavy,
-            body.ixx23 * heavy,
-            body.iyy23 * heavy,
-            body.izz23 * heavy,
-            body.ixx3 * heavy,
-            body.izz1 * heavy,
-            body.coupling * heavy,
-            none,
-            none};
   }
 
   void follow_log(std::size_t n, std::size_t row) {
@@ -142,13 +132,14 @@ class Run {
     }
   }
 
-  void drive(const arm::Plant<Lanes>& plant, const std::size_t (&rows)[kLanes], std::size_t step, Lanes dt) {
-    const Lanes no_load[kJoints] = {};
-    Lanes volts[kJoints];
-    read_volts(rows, step, volts);
-    if (sags_) arm::sag(plant.joints, row_.supply, s_, volts);
-    if (loses_) arm::lose(plant.joints, volts);
-    arm::advance(plant, s_, volts, no_load, dt, worn_);
+  // The voltages that arrive at the motors.
+  void arrive(const std::size_t (&rows)[kLanes], std::size_t step, Lanes (&volts)[kJoints]) const {
+    for (std::size_t n = 0; n < kLanes; ++n) {
+      const double* now = w_.volts + (rows[n] * w_.substeps + step) * kJoints;
+      for (std::size_t i = 0; i < kJoints; ++i) volts[i].set(n, now[i]);
+    }
+    if (sags_) arm::sag(row_.plant.joints, row_.supply, s_, volts);
+    if (loses_) arm::lose(row_.plant.joints, volts);
   }
 
   Lanes step_of(const std::size_t (&rows)[kLanes]) const {
@@ -157,18 +148,13 @@ class Run {
     return dt / static_cast<double>(w_.substeps);
   }
 
-  void read_volts(const std::size_t (&rows)[kLanes], std::size_t step, Lanes (&volts)[kJoints]) const {
-    for (std::size_t n = 0; n < kLanes; ++n) {
-      const double* now = w_.volts + (rows[n] * w_.substeps + step) * kJoints;
-      for (std::size_t i = 0; i < kJoints; ++i) volts[i].set(n, now[i]);
-    }
+  void prepare_look(Lanes dt) {
+    seen_dt_ = dt;
+    for (std::size_t i = 0; i < kJoints; ++i) lags_[i] = arm::lag_of(row_.plant.joints[i].sensor.lag, dt);
   }
 
-  void look(Lanes dt) {
-    for (std::size_t i = 0; i < kJoints; ++i) {
-      const arm::Sensor<Lanes>& sensor = row_.plant.joints[i].sensor;
-      arm::follow(sensor, arm::lag_of(sensor.lag, dt), s_.q[i], shown_[i]);
-    }
+  void look() {
+    for (std::size_t i = 0; i < kJoints; ++i) arm::follow(row_.plant.joints[i].sensor, lags_[i], s_.q[i], shown_[i]);
   }
 
   void keep(std::size_t kept) const {
@@ -184,6 +170,8 @@ class Run {
   Row row_;
   arm::State<Lanes> s_{};
   arm::Shown<Lanes> shown_[kJoints];
+  arm::Lag<Lanes> lags_[kJoints];
+  Lanes seen_dt_ = Lanes(0.0);
   Lanes offset_[kJoints];
   std::size_t first_[kLanes] = {}, led_[kLanes] = {};
   bool worn_ = false, sags_ = false, loses_ = false, plays_ = false;
