@@ -68,6 +68,18 @@ class Windows:
     spacing: Floats
     substeps: int
 
+    def repeated(self, times: int) -> Windows:
+        """The windows so many times, one lot after the other, to be simulated at once."""
+        angles, velocities, places = (np.tile(one, (times, 1)) for one in (self.angles, self.velocities, self.places))
+        first, led, measured = (
+            np.tile(self.first, times),
+            np.tile(self.led, times),
+            np.tile(self.measured, (times, 1, 1)),
+        )
+        return replace(
+            self, first=first, angles=angles, velocities=velocities, led=led, places=places, measured=measured
+        )
+
 
 def part_of(count: int, per_block: int, held_out: bool, held_out_every: int) -> NDArray[np.intp]:
     """The rows or windows of `count` that are held out, or those that are not."""

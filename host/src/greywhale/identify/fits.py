@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
 
 import numpy as np
+from threadpoolctl import threadpool_limits
 
-from greywhale.base.types import Flags, Floats, Progress
+from greywhale.base.types import Flags, Floats, Progress, show_no_progress
 from greywhale.identify.candidate import Candidate, WindowsAndLoop
 from greywhale.identify.fit import least_squares_fit
 from greywhale.identify.knocking import turns_of
@@ -40,6 +42,11 @@ class Fits:
         self._part = what, done, until, (until - done) / fits
         self.report(what, done)
 
+    def _progress(self, fits: int) -> None:
+        what, done, until, each = self._part
+        self._part = what, min(until, done + fits * each), until, each
+        self.report(what, self._part[1])
+
     def refine(
         self, windows: WindowResidual, candidate: Candidate, steps: int = WINDOW_STEPS, free: Flags | None = None
     ) -> Candidate:
@@ -52,6 +59,26 @@ class Fits:
                 seen.settle(candidate.plant, candidate.zero)
             candidate = self._settle_turn(seen, candidate, free)
         return candidate
+
+    def settle_each(self, windows: WindowResidual, candidates: Sequence[Candidate]) -> list[Candidate]:
+        """Fit models beside each other, each to windows whose starts are its own. Two at a time: one works in numpy
+        while the other simulates.
+        """
+        apart = [Fits(self.joints, show_no_progress) for _ in candidates]
+        seen = [windows.copy() for _ in candidates]
+        found: list[Candidate] = []
+        with threadpool_limits(limits=1, user_api="blas"), ThreadPoolExecutor(2) as pool:
+            fits = [pool.submit(Fits.settle, *one) for one in zip(apart, seen, candidates, strict=True)]
+            try:
+                for one in fits:
+                    found.append(one.result())
+                    self._progress(FITS_TO_SETTLE)
+            except BaseException:
+                pool.shutdown(cancel_futures=True)
+                raise
+        self.simulations += sum(one.simulations for one in apart)
+        self.simulated += sum(one.simulated for one in apart)
+        return found
 
     def _settle_turn(self, windows: WindowResidual, found: Candidate, free: Flags) -> Candidate:
         """Least squares and the choice of where each window starts in the gaps, in turns until that choice no longer
@@ -78,7 +105,7 @@ class Fits:
         fit = WindowFit(windows, space, start, free)
         what, done, until, each = self._part
         found = fit.run(steps, lambda share: self.report(what, min(until, done + each * share)))
-        self._part = what, min(until, done + each), until, each
+        self._progress(1)
         self.simulations += fit.simulations
         self.simulated += fit.simulations * windows.seconds
         return found

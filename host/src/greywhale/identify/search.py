@@ -142,12 +142,9 @@ class Search:
             hopeful = [(one, order) for one, order in extended if sure or self._is_hopeful(one, before)]
             if not hopeful:
                 return
-            share /= len(turn) * len(hopeful)
-            found = []
-            for place, (one, order) in enumerate(hopeful):
-                starts = len(GEARS) + 2 if order == "backlash" else 1
-                self.fits.begin_part(what, done + share * place, done + share * (place + 1), FITS_TO_SETTLE * starts)
-                found.append(self._measure(self._fit_order(one, order)))
+            fits = sum(len(GEARS) + 2 if order == "backlash" else 1 for _, order in hopeful)
+            self.fits.begin_part(what, done, done + share / len(turn), FITS_TO_SETTLE * fits)
+            found = [self._measure(one) for one in self._fit_orders(hopeful)]
             errors = [float(one.held_out or 0.0) + self._least_gain(one) for one in found]
             winner = int(np.argmin(errors))
             self._take(found[winner])
@@ -178,10 +175,12 @@ class Search:
             self.best = self._measure(replace(self.best, x=mixed))
         self._far = self.best  # where it is
 
-    def _fit_order(self, candidate: Candidate, order: str) -> Candidate:
-        """Fit an order's quantities along with the others, those of gears from several starts."""
-        if order != "backlash":
-            return self.fits.settle(self._fitted, candidate)
+    def _fit_orders(self, extended: Sequence[tuple[Candidate, str]]) -> list[Candidate]:
+        """Fit each order's quantities along with the others, those of gears from several starts."""
+        others = iter(self.fits.settle_each(self._fitted, [one for one, order in extended if order != "backlash"]))
+        return [self._fit_gears(one) if order == "backlash" else next(others) for one, order in extended]
+
+    def _fit_gears(self, candidate: Candidate) -> Candidate:
         return self._soften(self._fit_best([candidate, *(candidate.with_values(gear) for gear in GEARS)]))
 
     def _soften(self, stiff: Candidate) -> Candidate:
@@ -218,7 +217,7 @@ class Search:
 
     def _fit_best(self, starts: Sequence[Candidate]) -> Candidate:
         """Fit one model from several starts; the best goes on for each group of joints that feel each other."""
-        tried = [self.fits.settle(self._fitted, one) for one in starts]
+        tried = self.fits.settle_each(self._fitted, starts)
         seen = turns_of(self._fitted, starts[0].space, starts[0].knocking)[0][0]  # those that gears are fitted to
         errors = np.array([seen.settled_error(one.plant, one.zero) for one in tried])
         mixed = tried[0].space.mix([one.x for one in tried], errors, self.joints)
@@ -346,6 +345,6 @@ class Search:
         told = np.array([parameter.kind != "alpha" for parameter in candidate.space.parameters])
         if np.max(np.abs(other - candidate.x)[told]) < self._limits.other_optimum:
             return candidate
-        tried = [self.fits.settle(windows, replace(candidate, x=x)) for x in (candidate.x, other)]
+        tried = self.fits.settle_each(windows, [replace(candidate, x=x) for x in (candidate.x, other)])
         costs = np.array([cost(one, windows) for one in tried])
         return replace(candidate, x=candidate.space.mix([one.x for one in tried], costs, self.joints))

@@ -8,6 +8,7 @@ nearly linear in them. That keeps the residual smooth in the parameters, and fai
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from copy import copy
 from dataclasses import replace
 from functools import cached_property
 
@@ -68,6 +69,13 @@ class WindowResidual:
         """These logs in the short windows that gears are fitted to."""
         return self._in_brief()
 
+    def copy(self) -> WindowResidual:
+        """Return these windows again, with starts that can be chosen apart from theirs."""
+        other = copy(self)
+        other._pieces, other._sides, other._places = list(self._pieces), list(self._sides), dict(self._places)
+        other.__dict__.pop("brief", None)
+        return other
+
     def __call__(self, space: Space, points: Floats) -> Floats:
         """(candidates, numbers)."""
         plants = np.ascontiguousarray(space.plants(points))
@@ -100,8 +108,8 @@ class WindowResidual:
     def _settle_sides(self, number: int, plant: Floats, zero: Floats) -> bool:
         windows, log = self._pieces[number]
         tried = np.array([self._sides[number], *(np.full_like(windows.angles, side) for side in SIDES)])
-        costs = np.array([self._costs(windows, log, sides, plant, zero)[0] for sides in tried])
-        self._sides[number], changed = _choose(tried, costs, self.limits.windows.worth_a_change)
+        costs = self._costs(windows.repeated(len(tried)), log, tried.reshape(-1, JOINTS), plant, zero)[0]
+        self._sides[number], changed = _choose(tried, costs.reshape(tried.shape), self.limits.windows.worth_a_change)
         return changed
 
     def _settle_places(self, number: int, plant: Floats, zero: Floats) -> bool:
@@ -110,8 +118,9 @@ class WindowResidual:
         sides = self._sides[number]
         known = self._places.get(number, windows.places)
         tried = np.array([known, *(np.full_like(windows.angles, side) for side in SIDES)])
-        costs = np.array([self._costs(replace(windows, places=one), log, sides, plant, zero)[0] for one in tried])
-        self._places[number], changed = _choose(tried, costs, self.limits.windows.worth_a_change)
+        ways = replace(windows.repeated(len(tried)), places=tried.reshape(-1, JOINTS))
+        costs = self._costs(ways, log, np.tile(sides, (len(tried), 1)), plant, zero)[0]
+        self._places[number], changed = _choose(tried, costs.reshape(tried.shape), self.limits.windows.worth_a_change)
         self._pieces[number] = replace(windows, places=self._places[number]), log
         return changed
 
