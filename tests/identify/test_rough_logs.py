@@ -76,7 +76,9 @@ def test_a_long_gap_ends_a_stretch_and_no_window_crosses_it(recorded: Recorded) 
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("moment", ["least squares from several", "choosing the model's order", "fitting the chosen"])
+@pytest.mark.parametrize(
+    "moment", ["least squares from several", "choosing the model's order", "fitting the chosen", "judging the model"]
+)
 def test_ctrl_c_at_any_moment_keeps_the_best_model_so_far(
     shoulder: Recorded, white_box: ArmParameters, tables: list[ParameterTable], tmp_path: Path, moment: str
 ) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -13,6 +14,7 @@ from greywhale.arm.plants import column
 from greywhale.files.arm import load_arm
 from greywhale.files.log.condition import Condition
 from greywhale.identify import IdentificationResult, identify, validated
+from greywhale.identify import judge as judging
 from greywhale.identify.excite import design
 from greywhale.identify.judge import CHANGED, FIT, SECOND, LogVerdict, judge, undecided_of, warnings_of
 from greywhale.identify.limits import IDENTIFICATION_LIMITS
@@ -200,6 +202,23 @@ def test_chance_decides_where_nobody_cares_for_the_difference(model: float) -> N
     assert one.is_as_good
     assert not one.is_worse
     assert undecided_of([one]) == []
+
+
+@pytest.mark.slow
+def test_ctrl_c_while_logs_are_judged_keeps_the_model(
+    shoulder: Recorded, white_box: ArmParameters, tables: list[ParameterTable], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pressed = iter([True])
+
+    def judge_or_stop(*given: Any) -> LogVerdict:
+        if next(pressed, False):
+            raise KeyboardInterrupt
+        return judge(*given)
+
+    monkeypatch.setattr(judging, "judge", judge_or_stop)
+    found = identify([first(shoulder.fit, 5.0)], white_box, validate=[shoulder.second], tables=tables)
+    assert found.text().startswith("UNFINISHED")
+    assert len(found.verdicts) == 2
 
 
 @pytest.mark.slow

@@ -22,7 +22,9 @@ DRAWS = 60  # plants that tell how much better or worse a model may do by chance
 
 
 def find_default(task: IdentificationRequest) -> FoundModel:
-    """Run the search. An interrupt after the first model ends it early; before that, the interrupt is raised again."""
+    """Run the search. An interrupt after the first model ends it early; before that, the interrupt is raised again.
+    One while the model is judged, which takes a moment, leaves out the fits of simulated logs.
+    """
     arm, joints = task.white_box, task.moving
     prepared = [subject.log for subject in task.fitted]
     search = Search(arm, prepared, task.loops(), joints, task.seed, task.report, _begin(task))
@@ -31,9 +33,18 @@ def find_default(task: IdentificationRequest) -> FoundModel:
     except KeyboardInterrupt:
         if search.best is None:
             raise
-    best = search.best
+    try:
+        task.report("judging the model", 0.0)
+        return _describe(task, search)
+    except KeyboardInterrupt:
+        search.complete = False
+        return _describe(task, search)
+
+
+def _describe(task: IdentificationRequest, search: Search) -> FoundModel:
+    """The best model of a search with its doubts; with those that simulated logs show if the search is complete."""
+    arm, joints, prepared, best = task.white_box, task.moving, search.logs, search.best
     assert best is not None
-    task.report("judging the model", 0.0)
     windows = WindowResidual(prepared, arm, joints, longest_step=SLICE_S)
     for seen, _ in turns_of(windows, best.space, best.knocking):
         seen.settle(best.plant, best.zero)

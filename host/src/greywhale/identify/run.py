@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 from greywhale.arm import ArmParameters
 from greywhale.base.errors import MOST_SEED, BadUsage, require_within
@@ -64,7 +65,11 @@ def identify(
     task = IdentificationRequest(arm, tuple(subjects), seed, report or show_no_progress, begin)
     for subject in subjects:
         checks.refuse_undriven(subject.log, task.moving)
-    return _judged(arm, method, seed, _find(task, method), subjects, (*_remarks(logs, validate), *doubts))
+    found, remarks = _find(task, method), (*_remarks(logs, validate), *doubts)
+    try:
+        return _judged(arm, method, seed, found, subjects, remarks)
+    except KeyboardInterrupt:  # it takes a moment, and nobody wants to lose the model
+        return _judged(arm, method, seed, replace(found, complete=False), subjects, remarks)
 
 
 def validated(
