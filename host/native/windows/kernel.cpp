@@ -99,20 +99,13 @@ class Run {
   // window begins, how far its teeth bend, and how fast it is.
   void lead() {
     std::size_t rows = 0;
-    for (std::size_t n = 0; n < kLanes; ++n) {
-      rows = std::max(rows, led_[n]);
-      if (led_[n] > 0) follow_log(n, first_[n] - led_[n]);
-      for (std::size_t i = 0; i < kJoints; ++i) {
-        const double side = w_.sides[task(n).window * kJoints + i];
-        s_.motor_q[i].set(n, s_.q[i][n] + side * row_.plant.joints[i].gear.half_gap[n]);
-        s_.motor_v[i].set(n, s_.v[i][n]);
-      }
-    }
+    for (std::size_t n = 0; n < kLanes; ++n) rows = std::max(rows, led_[n]);
     for (std::size_t left = rows; left > 0; --left) {
       std::size_t at[kLanes];  // a lane with a shorter way stands where its way begins
       for (std::size_t n = 0; n < kLanes; ++n) {
         at[n] = first_[n] - std::min(led_[n], left);
         follow_log(n, at[n]);
+        if (left >= led_[n]) stand(n);
       }
       const Lanes dt = step_of(at);
       for (std::size_t step = 0; step < w_.substeps; ++step) {
@@ -120,6 +113,18 @@ class Run {
         arrive(at, step, volts);
         arm::advance_motors(row_.plant, s_, volts, dt, worn_);
       }
+    }
+    for (std::size_t n = 0; n < kLanes; ++n) {
+      if (led_[n] == 0) stand(n);
+    }
+  }
+
+  // A motor that no log has led yet stands where its side says, as fast as its link.
+  void stand(std::size_t n) {
+    for (std::size_t i = 0; i < kJoints; ++i) {
+      const double side = w_.sides[task(n).window * kJoints + i];
+      s_.motor_q[i].set(n, s_.q[i][n] + side * row_.plant.joints[i].gear.half_gap[n]);
+      s_.motor_v[i].set(n, s_.v[i][n]);
     }
   }
 
