@@ -12,7 +12,7 @@ from greywhale.arm.parameters import PITCH_JOINTS
 from greywhale.identify.data import prepare
 from greywhale.identify.limits import IDENTIFICATION_LIMITS
 from greywhale.identify.space import MOTOR, Space
-from greywhale.identify.uncertainty import uncertainty
+from greywhale.identify.uncertainty import combine_sources, uncertainty
 from greywhale.identify.windows import WindowResidual
 from tools.support.recordings import Recorded
 
@@ -45,3 +45,15 @@ def test_a_gap_is_less_sure_where_play_hides_it(recorded: Recorded, hidden: ArmP
 
     assert variance(0.01, "gap", "play") == pytest.approx(variance(0.0, "gap", "play") + 1e-4)
     assert variance(0.01, "gap") == variance(0.0, "gap")
+
+
+def test_two_numbers_of_which_only_the_sum_shows_stay_as_open_as_in_the_arm_file() -> None:
+    """A driver that keeps volts in one direction alone has such numbers: the mean, and half of the difference."""
+    draws = np.random.default_rng(5)
+    for readings in range(100, 120):
+        slopes = np.repeat(1e3 * draws.uniform(0.5, 2.0, (readings, 1)), 2, axis=1)
+        gradients = slopes * draws.normal(size=(readings, 1))
+        information, scatter, nominal = slopes.T @ slopes, gradients.T @ gradients, np.diag([9.0, 9.0])
+        found = combine_sources(information, scatter, information, nominal)
+        assert found[0, 0] + found[1, 1] - 2.0 * found[0, 1] == pytest.approx(2.0 / 9.0)
+        assert 0.0 <= found.sum() < 1e-5

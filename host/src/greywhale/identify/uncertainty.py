@@ -107,7 +107,7 @@ def uncertainty(
     condition = float(values[-1]) / float(values[0]) if known else LARGEST_CONDITION
     gradients = np.zeros((residual.clusters.max() + 1, len(space)))
     np.add.at(gradients, residual.clusters, fitted * numbers[0][:, None])
-    covariance = _combine(information, gradients.T @ gradients, slopes, np.diag(space.doubts_at(x) ** -2.0))
+    covariance = combine_sources(information, gradients.T @ gradients, slopes, np.diag(space.doubts_at(x) ** -2.0))
     besides = np.zeros_like(covariance)
     if to_read:
         fit = np.linalg.inv(slopes + np.diag(space.doubts() ** -2.0)) @ fitted.T
@@ -158,20 +158,22 @@ def _with_other_links(arm: ArmParameters, limits: UncertaintyLimits) -> list[Arm
     return arms
 
 
-def _combine(information: Floats, scatter: Floats, slopes: Floats, nominal: Floats) -> Floats:
+def combine_sources(information: Floats, scatter: Floats, slopes: Floats, nominal: Floats) -> Floats:
     """The covariance from three sources.
 
     `information` is what the readings would tell if only noise were in them. `scatter`, of the clusters' gradients, is
     how much they disagree beyond that. `nominal` is the user's arm file, as information. With the `slopes` of the
     gradients the readings tell slopes x scatter^-1 x slopes (Godambe). Few clusters show the scatter badly, so it is
-    drawn half way towards the information times one common factor. Numbers that the readings leave open stay as
-    uncertain as in the arm file.
+    drawn half way towards the information times one common factor. Numbers, and sums of numbers, that the readings
+    leave open stay as uncertain as in the arm file.
     """
     inverse = np.linalg.inv(information + nominal)
     common = float(np.trace(inverse @ scatter) / np.trace(inverse @ information))
-    drawn = (scatter + common * information) / 2.0 + 1e-9 * nominal
-    told = slopes.T @ np.linalg.solve(drawn, slopes)
-    covariance = np.linalg.inv((told + told.T) / 2.0 + nominal)
+    # In units of the arm file's doubts. Readings that show only the sum of two numbers leave a matrix without inverse.
+    units = np.outer(doubts := np.diag(nominal) ** -0.5, doubts)
+    drawn, shown = (scatter + common * information) / 2.0 * units, slopes * units
+    told = shown.T @ np.linalg.pinv(drawn, rcond=1.0 / LARGEST_CONDITION, hermitian=True) @ shown
+    covariance = np.linalg.inv((told + told.T) / 2.0 + np.eye(len(doubts))) * units
     return (covariance + covariance.T) / 2.0
 
 
