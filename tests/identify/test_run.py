@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from greywhale.arm import ArmParameters
+from greywhale.arm.parameters import PITCH_JOINTS
 from greywhale.arm.plants import column
 from greywhale.files.arm import load_arm
 from greywhale.files.log.condition import Condition
@@ -66,20 +67,20 @@ def test_motors_come_out_as_they_are(outcome: IdentificationResult, hidden: ArmP
         assert found[f"joint{joint}.damping"] == pytest.approx(true.damping / true.torque_per_volt, rel=0.15)
         friction = hidden.joint[joint].friction.coulomb / true.torque_per_volt
         assert found[f"joint{joint}.coulomb"] == pytest.approx(friction, rel=0.35)
+    for joint in PITCH_JOINTS:
+        assert found[f"joint{joint}.alpha"] == pytest.approx(1.0 / hidden.actuator(joint).torque_per_volt, rel=0.1)
     assert all(one.deviation is not None and one.deviation >= 0.0 for one in outcome.estimates)
     assert outcome.found.condition is not None
     assert outcome.found.condition > 1.0
 
 
 @pytest.mark.slow
-def test_order_is_chosen_by_held_out_data(outcome: IdentificationResult, hidden: ArmParameters) -> None:
+def test_order_is_chosen_by_held_out_data(outcome: IdentificationResult) -> None:
     """Coulomb friction must be seen to be worth it: this arm has a lot."""
     errors = dict(outcome.found.orders)
     assert errors["Coulomb friction"] < 0.5 * errors["motors"]
-    # So short a log shows a yaw with three times the torque a little better; the arm file outweighs that.
+    # So short a log may show a yaw with three times the torque a little better; the arm file outweighs that.
     assert errors[outcome.found.order] <= min(errors.values()) + 0.2
-    alpha = next(one.value for one in outcome.estimates if one.name == "joint0.alpha")
-    assert 0.5 < alpha * hidden.actuator(0).torque_per_volt < 2.0
 
 
 @pytest.mark.slow

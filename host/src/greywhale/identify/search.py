@@ -12,7 +12,7 @@
 5. The chosen model is fitted to the whole log.
 
 A search may begin with a model of the same arm, found from fewer logs. Its quantities are then fitted at once after
-step 1, and only orders that it lacks are tried.
+step 1, and only orders that it lacks are tried. The model as it is competes with that fit: these logs may show less.
 """
 
 from __future__ import annotations
@@ -103,6 +103,7 @@ class Search:
         self._consider(self._fit_friction())
         if self.begin is not None:
             self._consider(self._fit_begun(self.begin))
+            self._consider(self.begin)
         # An order that did not help at first may do so once the later ones are known.
         for _ in range(ROUNDS if self.begin is None else 1):
             before = self.best
