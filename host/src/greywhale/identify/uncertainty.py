@@ -173,7 +173,9 @@ def combine_sources(information: Floats, scatter: Floats, slopes: Floats, nomina
     units = np.outer(doubts := np.diag(nominal) ** -0.5, doubts)
     drawn, shown = (scatter + common * information) / 2.0 * units, slopes * units
     told = shown.T @ np.linalg.pinv(drawn, rcond=1.0 / LARGEST_CONDITION, hermitian=True) @ shown
-    covariance = np.linalg.inv((told + told.T) / 2.0 + np.eye(len(doubts))) * units
+    # By its eigenvalues, so that rounding leaves no variance below 0.
+    values, vectors = np.linalg.eigh((told + told.T) / 2.0)
+    covariance = vectors / (1.0 + np.maximum(values, 0.0)) @ vectors.T * units
     return (covariance + covariance.T) / 2.0
 
 
