@@ -24,7 +24,7 @@ from greywhale.identify.data import Prepared, prepare
 from greywhale.identify.knocking import turns_of
 from greywhale.identify.limits import IDENTIFICATION_LIMITS, UncertaintyLimits
 from greywhale.identify.space import COUPLED, WHOLE_ARM, Space
-from greywhale.identify.steps import WindowFit
+from greywhale.identify.steps import ROUGHLY_ENOUGH, WindowFit
 from greywhale.identify.windows import WindowResidual
 from greywhale.loop.leader import SLICE_S
 from greywhale.protocol.firmware import ANGLE_LSB, CONVERTER_COUNTS, TICK_S, pwm_steps
@@ -63,7 +63,7 @@ def scatter_of_fits(
         fitted = np.clip(start, low, high)
         for seen, free in turns_of(windows, space, knocking):
             seen.settle(plant, zero)
-            fitted = WindowFit(seen, space, fitted, free).run(STEPS)
+            fitted = WindowFit(seen, space, fitted, free, ROUGHLY_ENOUGH).run(STEPS)
         return fitted - x
 
     found: list[Floats] = []

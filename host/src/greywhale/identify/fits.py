@@ -14,17 +14,32 @@ from greywhale.identify.candidate import Candidate, WindowsAndLoop
 from greywhale.identify.fit import least_squares_fit
 from greywhale.identify.knocking import turns_of
 from greywhale.identify.space import Space
-from greywhale.identify.steps import WindowFit
+from greywhale.identify.steps import ENOUGH, ROUGHLY_ENOUGH, WindowFit
 from greywhale.identify.windows import WindowResidual
 
 WINDOW_STEPS = 20  # of a fit to windows, at most
 LOOP_STEPS = 10  # of one to windows and closed loop
-# The side of its gap from which each motor starts is chosen anew at most so often, each time for some steps of the fit.
-SETTLINGS = 4
-SETTLED_STEPS = 8
 FITS_TO_SETTLE = 3  # so many it often takes until a candidate is settled; only the share that is reported hangs on it
 # Readings come in steps, so finite differences in the closed loop are wider than in the windows.
 LOOP_STEP_SCALE = 5.0
+
+
+@dataclass(frozen=True)
+class Effort:
+    """The length of a fit: its steps at most; how often it chooses anew the side of its gap from which each motor
+    starts, and its steps after each choice; the share of the cost that a step must gain.
+    """
+
+    steps: int
+    choices: int
+    steps_after_choice: int
+    enough: float
+
+
+# Twice the choices find no better models.
+WHOLE = Effort(WINDOW_STEPS, 2, 8, ENOUGH)
+# Of several starts so little shows which one leads on.
+ROUGH = Effort(8, 1, 4, ROUGHLY_ENOUGH)
 
 
 @dataclass
@@ -48,19 +63,26 @@ class Fits:
         self.report(what, self._part[1])
 
     def refine(
-        self, windows: WindowResidual, candidate: Candidate, steps: int = WINDOW_STEPS, free: Flags | None = None
+        self,
+        windows: WindowResidual,
+        candidate: Candidate,
+        steps: int = WINDOW_STEPS,
+        free: Flags | None = None,
+        enough: float = ENOUGH,
     ) -> Candidate:
-        return replace(candidate, x=self.fit_windows(windows, candidate.space, candidate.x, steps, free))
+        return replace(candidate, x=self.fit_windows(windows, candidate.space, candidate.x, steps, free, enough))
 
-    def settle(self, windows: WindowResidual, candidate: Candidate) -> Candidate:
+    def settle(self, windows: WindowResidual, candidate: Candidate, effort: Effort = WHOLE) -> Candidate:
         """Fit a model's numbers in their turns."""
         for seen, free in turns_of(windows, candidate.space, candidate.knocking):
             if candidate.knocking:
                 seen.settle(candidate.plant, candidate.zero)
-            candidate = self._settle_turn(seen, candidate, free)
+            candidate = self._settle_turn(seen, candidate, free, effort)
         return candidate
 
-    def settle_each(self, windows: WindowResidual, candidates: Sequence[Candidate]) -> list[Candidate]:
+    def settle_each(
+        self, windows: WindowResidual, candidates: Sequence[Candidate], effort: Effort = WHOLE
+    ) -> list[Candidate]:
         """Fit models beside each other, each to windows whose starts are its own. Two at a time: one works in numpy
         while the other simulates.
         """
@@ -68,7 +90,7 @@ class Fits:
         seen = [windows.copy() for _ in candidates]
         found: list[Candidate] = []
         with threadpool_limits(limits=1, user_api="blas"), ThreadPoolExecutor(2) as pool:
-            fits = [pool.submit(Fits.settle, *one) for one in zip(apart, seen, candidates, strict=True)]
+            fits = [pool.submit(Fits.settle, *one, effort) for one in zip(apart, seen, candidates, strict=True)]
             try:
                 for one in fits:
                     found.append(one.result())
@@ -80,15 +102,15 @@ class Fits:
         self.simulated += sum(one.simulated for one in apart)
         return found
 
-    def _settle_turn(self, windows: WindowResidual, found: Candidate, free: Flags) -> Candidate:
+    def _settle_turn(self, windows: WindowResidual, found: Candidate, free: Flags, effort: Effort) -> Candidate:
         """Least squares and the choice of where each window starts in the gaps, in turns until that choice no longer
         changes.
         """
-        found = self.refine(windows, found, free=free)
-        for _ in range(SETTLINGS):
+        found = self.refine(windows, found, effort.steps, free, effort.enough)
+        for _ in range(effort.choices):
             if not windows.settle(found.plant, found.zero):
                 break
-            found = self.refine(windows, found, SETTLED_STEPS, free)
+            found = self.refine(windows, found, effort.steps_after_choice, free, effort.enough)
         return found
 
     def mix_blocks(self, windows: WindowResidual, space: Space, fits: Sequence[Floats]) -> Floats:
@@ -99,10 +121,16 @@ class Fits:
         return space.mix(fits, errors[:, list(self.joints)], self.joints)
 
     def fit_windows(
-        self, windows: WindowResidual, space: Space, start: Floats, steps: int = WINDOW_STEPS, free: Flags | None = None
+        self,
+        windows: WindowResidual,
+        space: Space,
+        start: Floats,
+        steps: int = WINDOW_STEPS,
+        free: Flags | None = None,
+        enough: float = ENOUGH,
     ) -> Floats:
         """Run least squares on windows, and count what was simulated."""
-        fit = WindowFit(windows, space, start, free)
+        fit = WindowFit(windows, space, start, free, enough)
         what, done, until, each = self._part
         found = fit.run(steps, lambda share: self.report(what, min(until, done + each * share)))
         self._progress(1)

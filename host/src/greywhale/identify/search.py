@@ -27,7 +27,7 @@ from greywhale.base.types import Progress
 from greywhale.identify.candidate import Candidate, WindowsAndLoop
 from greywhale.identify.closed_loop import Loop, LoopResidual
 from greywhale.identify.data import Prepared
-from greywhale.identify.fits import FITS_TO_SETTLE, Fits
+from greywhale.identify.fits import FITS_TO_SETTLE, ROUGH, Fits
 from greywhale.identify.knocking import knocking_joints, knocking_starts, turns_of, with_better_gears
 from greywhale.identify.nearer import cost, far_joints, with_nearer_torque
 from greywhale.identify.soft_teeth import with_soft_teeth
@@ -217,8 +217,10 @@ class Search:
         return self._fit_best([begin, own, *gears])
 
     def _fit_best(self, starts: Sequence[Candidate]) -> Candidate:
-        """Fit one model from several starts; the best goes on for each group of joints that feel each other."""
-        tried = self.fits.settle_each(self._fitted, starts)
+        """Fit one model roughly from several starts; the best goes on for each group of joints that feel each other."""
+        if len(starts) == 1:
+            return self.fits.settle(self._fitted, starts[0])
+        tried = self.fits.settle_each(self._fitted, starts, ROUGH)
         seen = turns_of(self._fitted, starts[0].space, starts[0].knocking)[0][0]  # those that gears are fitted to
         errors = np.array([seen.settled_error(one.plant, one.zero) for one in tried])
         mixed = tried[0].space.mix([one.x for one in tried], errors, self.joints)

@@ -23,7 +23,8 @@ from greywhale.protocol.firmware import JOINTS
 DAMPINGS = (0.02, 0.3, 5.0, 100.0)  # times a block's last damping
 LARGEST_STEP = 1.0  # of a searched number, in doubts
 MOST_DAMPING = 1e8  # with more of it no step moves anything
-ENOUGH = 1e-3  # the fit ends when a step gains less than this share of the cost; a fifth of it finds no better models
+ENOUGH = 2e-4  # a fit ends when a step gains less than this share of the cost
+ROUGHLY_ENOUGH = 1e-3  # of fits that are only compared with each other
 
 
 @dataclass
@@ -38,12 +39,20 @@ class _Block:
 
 
 class WindowFit:
-    """One fit, of all searched numbers or of those marked `free`. The misfit that counts as usual is measured where it
-    starts.
+    """One fit, of all searched numbers or of those marked `free`, until a step gains less than `enough`. The misfit
+    that counts as usual is measured where it starts.
     """
 
-    def __init__(self, residual: WindowResidual, space: Space, start: Floats, free: Flags | None = None) -> None:
+    def __init__(
+        self,
+        residual: WindowResidual,
+        space: Space,
+        start: Floats,
+        free: Flags | None = None,
+        enough: float = ENOUGH,
+    ) -> None:
         self._residual = residual
+        self._enough = enough
         self._space = space
         self._free = np.ones(len(start), dtype=bool) if free is None else free
         self._nominal = space.start()
@@ -110,7 +119,7 @@ class WindowFit:
             block.damping = max(DAMPINGS[best] * block.damping, 1e-6)
         else:
             block.damping *= 1e3
-        block.done = gained < ENOUGH * self._costs[number] if gained > 0.0 else block.damping > MOST_DAMPING
+        block.done = gained < self._enough * self._costs[number] if gained > 0.0 else block.damping > MOST_DAMPING
 
     def _proposed(self, block: _Block, jacobian: Floats, weights: Floats) -> Floats:
         """Levenberg-Marquardt steps of one block (dampings, numbers); a number at its bound does not leave the box."""

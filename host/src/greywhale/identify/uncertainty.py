@@ -175,7 +175,7 @@ def combine_sources(information: Floats, scatter: Floats, slopes: Floats, nomina
     told = shown.T @ np.linalg.pinv(drawn, rcond=1.0 / LARGEST_CONDITION, hermitian=True) @ shown
     # By its eigenvalues, so that rounding leaves no variance below 0.
     values, vectors = np.linalg.eigh((told + told.T) / 2.0)
-    covariance = vectors / (1.0 + np.maximum(values, 0.0)) @ vectors.T * units
+    covariance: Floats = vectors / (1.0 + np.maximum(values, 0.0)) @ vectors.T * units
     return (covariance + covariance.T) / 2.0
 
 
