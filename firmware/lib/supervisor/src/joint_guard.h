@@ -1,8 +1,10 @@
 // What a joint's motor may get until the next look at the joint: all, a gentle push, or what holds it against gravity.
 // After a short hold, as an abrupt move may bring one, all comes back at once. After a long one, or many in a row, it
-// comes back step by step: at once it would throw the arm after a hand that lets go, and beat against a hand that gives
-// way like a spring: pushed back by a motor that has all, held back, pressed away, and again. A pitch joint that goes
-// away from its reference may be falling, and gets it eight times as fast.
+// comes back step by step from a gentle push on: at once it would throw the arm after a hand that lets go, and beat
+// against a hand that gives way like a spring: pushed back by a motor that has all, held back, pressed away, and again.
+// A motor that drives its joint at more than 1 rad/s meanwhile gets less. All comes back quickly while the controller
+// asks for less than half of it, and while it brakes: a joint on its way to its reference, or a pitch joint that goes
+// away from it and may be falling. Below a gentle push, a joint that moves while its reading lies would not be found.
 #pragma once
 #include <signal_chain/cosine.h>
 #include <stdint.h>
@@ -32,23 +34,33 @@ class JointGuard {
       held = held > UINT8_MAX - held_longer ? UINT8_MAX : static_cast<uint8_t>(held + held_longer);
       return;
     }
-    if (held >= held_long && most < all_mv) {
-      const bool falls = may_fall(joint) && supervisor.goes(joint, seen.error < 0);
-      most = static_cast<uint16_t>(most + (falls ? 8 : 1) * comes_back_mv);
-      return;
-    }
+    if (held >= held_long && most < all_mv) return come_back(supervisor, joint, seen, limits, gravity);
     most = UINT16_MAX;
     if (held > 0) --held;
   }
   uint16_t most_mv(uint8_t joint) const { return most_mv_[joint]; }
 
  private:
+  // What a joint gave way to may have been a hand: a gentle push carries what is known of gravity alone.
+  void come_back(const Supervisor& supervisor, uint8_t joint, JointSeen seen, const MotionLimits& limits,
+                 const Gravity& gravity) {
+    uint16_t& most = most_mv_[joint];
+    seen.gravity_mv = gravity_mv(joint, gravity);
+    const uint16_t least = held_mv(Hold::gentle, seen, limits);
+    const bool up = seen.volts_mv > 0, spare = size_of(seen.volts_mv) < most / 2;
+    const bool braked = supervisor.goes(joint, !up) && (may_fall(joint) || supervisor.goes(joint, seen.error > 0));
+    if (spare || braked) most = static_cast<uint16_t>(most + quickly_mv);
+    else if (!supervisor.goes_fast(joint, up)) most = static_cast<uint16_t>(most + comes_back_mv);
+    else if (most > quickly_mv) most = static_cast<uint16_t>(most - quickly_mv);
+    if (most < least) most = least;
+  }
   static bool may_fall(uint8_t joint) { return joint == 1 || joint == 2; }
   static int16_t gravity_mv(uint8_t joint, const Gravity& gravity);
   static uint16_t held_mv(Hold hold, const JointSeen& seen, const MotionLimits& limits);
 
   static constexpr uint16_t all_mv = 32767;      // more than any supply
-  static constexpr uint16_t comes_back_mv = 64;  // a look, 16 V/s
+  static constexpr uint16_t comes_back_mv = 32;  // a look, 8 V/s
+  static constexpr uint16_t quickly_mv = 512;    // 128 V/s
   // A look that holds a joint counts four of those that do not; 0.1 s without a look in between is long.
   static constexpr uint8_t held_longer = 4, held_long = 100;
 

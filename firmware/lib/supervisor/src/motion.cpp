@@ -106,11 +106,13 @@ inline int16_t Motion::follow(Joint& joint) {
   return static_cast<int16_t>(way * 4);
 }
 
-// A joint that gives way while it is pushed gently carries more than is known. One that does not sink does not.
+// A joint that gives way while it is pushed gently carries more than is known. One that stays where it is, or goes the
+// other way, although its load should take it along, does not carry that.
 inline void Motion::learn(Joint& joint, const Push& push) {
-  if (joint.speed == 0) {
-    if (push.way != 0 && (push.left_mv ^ joint.load_mv) < 0) joint.load_mv = toward_zero(joint.load_mv, unloads_mv);
-  } else if (joint.hold != Hold::free && (joint.speed ^ joint.missing) < 0) {
+  const bool sinks = (push.left_mv ^ joint.load_mv) < 0;  // if the load is right
+  if (sinks && push.way != 0 && (joint.speed == 0 || (push.left_mv ^ joint.speed) < 0)) {
+    joint.load_mv = toward_zero(joint.load_mv, unloads_mv);
+  } else if (joint.speed != 0 && joint.hold != Hold::free && (joint.speed ^ joint.missing) < 0) {
     joint.load_mv = within(joint.load_mv + (joint.missing < 0 ? -loads_mv : loads_mv), most_load_mv);
   }
 }

@@ -79,11 +79,13 @@ class Motion {
   }
   Hold hold(uint8_t joint) const { return joints_[joint].hold; }
   int16_t load_mv(uint8_t joint) const { return joints_[joint].load_mv; }
-  // Whether the joint goes up, or down.
-  bool goes(uint8_t joint, bool up) const {
+  // Whether the joint goes up, or down, faster than this.
+  bool goes(uint8_t joint, bool up, int16_t than = moves) const {
     const int16_t speed = joints_[joint].speed;
-    return up ? speed > moves : speed < -moves;
+    return up ? speed > than : speed < -than;
   }
+
+  static constexpr int16_t fast = 64;  // q14 rad a look, 1 rad/s
 
  private:
   static constexpr int16_t moves = 20;  // q14 rad a look, 0.3 rad/s

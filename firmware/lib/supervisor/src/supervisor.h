@@ -88,6 +88,7 @@ class Supervisor {
   Hold hold(uint8_t joint) const { return motion_.hold(joint); }
   int16_t load_mv(uint8_t joint) const { return motion_.load_mv(joint); }
   bool goes(uint8_t joint, bool up) const { return motion_.goes(joint, up); }
+  bool goes_fast(uint8_t joint, bool up) const { return motion_.goes(joint, up, Motion::fast); }
   // Share of the supply that the controllers may use in the next tick; 32768 is all of it.
   uint16_t share_q15() const { return soft_start_.share_q15(); }
 

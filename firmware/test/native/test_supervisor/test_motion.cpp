@@ -186,7 +186,8 @@ TEST_CASE("a joint that goes up is told from one that stands or goes down") {
   }
 }
 
-TEST_CASE("a joint that gives way while it is pushed carries more than is known, and less once it rests with less") {
+TEST_CASE(
+    "a joint that gives way while it is pushed carries more than is known, and less once it rests or rises with less") {
   Reading sinks, stands;
   sinks.run(0, 0.5, always(0.5), always(7));
   stands.run(0, 0.5, always(0.5), always(7));
@@ -195,8 +196,11 @@ TEST_CASE("a joint that gives way while it is pushed carries more than is known,
   CHECK(sinks.motion.load_mv(2) > 1500);
   stands.run(0.5, 1, always(0.5), always(0), 0.1);
   CHECK(stands.motion.load_mv(2) == 0);
+  Reading rises = sinks;
   sinks.run(0.8, 5, always(0.44), always(-4), -0.01);
   CHECK(sinks.motion.load_mv(2) == 0);
+  rises.run(0.8, 1.3, [](double s) { return 0.44 + 0.5 * (s - 0.8); }, always(-4), -0.01);
+  CHECK(rises.motion.load_mv(2) == 0);
 }
 
 TEST_CASE("an elbow that its shoulder throws back is not held back for that, but beside any other joint it is") {
