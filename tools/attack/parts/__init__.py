@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from tools.attack.part import Part
-from tools.attack.parts import cuts, faults, fuzz, lies, link
+from tools.attack.parts import cuts, faults, fuzz, hands, lies, link
 
 PARTS: tuple[Part, ...] = (
     faults.PART,
     lies.PART,
+    hands.PART,
     link.PART,
     fuzz.PART,
     cuts.PART,
