@@ -24,7 +24,7 @@ DAMPINGS = (0.02, 0.3, 5.0, 100.0)  # times a block's last damping
 LARGEST_STEP = 1.0  # of a searched number, in doubts
 MOST_DAMPING = 1e8  # with more of it no step moves anything
 ENOUGH = 2e-4  # a fit ends when a step gains less than this share of the cost
-ROUGHLY_ENOUGH = 1e-3  # of fits that are only compared with each other
+ROUGHLY_ENOUGH = 1e-3  # of fits that are compared with each other, and of those to simulated logs
 
 
 @dataclass
