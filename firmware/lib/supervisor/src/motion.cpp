@@ -58,8 +58,9 @@ __attribute__((noinline)) MotionFault Motion::look_at(Joint& own, const JointSee
   const bool back = goes_back(own, moved, push);
   if (runs_away(own, limits.runaway)) return MotionFault::runaway;
   if (limits.stall == 0) return MotionFault::none;
-  learn(own, push);
-  expect(own, push, limits.travel, back);
+  const int16_t way = follow(own);
+  learn(own, push, way);
+  expect(own, push, limits.travel, way, back);
   return hold(own, push.way, seen.error, limits.time);
 }
 
@@ -106,13 +107,15 @@ inline int16_t Motion::follow(Joint& joint) {
   return static_cast<int16_t>(way * 4);
 }
 
-// A joint that gives way while it is pushed gently carries more than is known. One that stays where it is, or goes the
+// A joint that gives way while it is pushed gently carries more than is known: one that has gone against the push
+// before this look and goes on. Noise does not, nor does a reading that froze. One that stays where it is, or goes the
 // other way, although its load should take it along, does not carry that.
-inline void Motion::learn(Joint& joint, const Push& push) {
+inline void Motion::learn(Joint& joint, const Push& push, int16_t way) {
   const bool sinks = (push.left_mv ^ joint.load_mv) < 0;  // if the load is right
   if (sinks && push.way != 0 && (joint.speed == 0 || (push.left_mv ^ joint.speed) < 0)) {
     joint.load_mv = toward_zero(joint.load_mv, unloads_mv);
-  } else if (joint.speed != 0 && joint.hold != Hold::free && (joint.speed ^ joint.missing) < 0) {
+  } else if (joint.speed != 0 && way != 0 && joint.hold != Hold::free && (joint.speed ^ joint.missing) < 0 &&
+             (way ^ joint.missing) < 0) {
     joint.load_mv = within(joint.load_mv + (joint.missing < 0 ? -loads_mv : loads_mv), most_load_mv);
   }
 }
@@ -120,9 +123,9 @@ inline void Motion::learn(Joint& joint, const Push& push) {
 // What the voltage of this look gives, less what the reading shows of it. Below breakaway friction takes what is
 // missing, unless the joint is held back. A reading that moves is better known than the model: each way that it makes
 // takes off twice as much of what it and the model disagree about.
-inline void Motion::expect(Joint& joint, const Push& push, const Travel& travel, bool back) {
+inline void Motion::expect(Joint& joint, const Push& push, const Travel& travel, int16_t way, bool back) {
   const bool held = joint.hold != Hold::free;
-  const int16_t way = follow(joint), before = joint.speed;
+  const int16_t before = joint.speed;
   joint.speed = toward_zero(static_cast<int16_t>(before + (way - before) / 4), way == 0);
   const auto turned = static_cast<int16_t>(joint.speed - before);
   const int16_t change = within(int32_t{turned + thrown_ / 2} * travel.time_constant, most_way);

@@ -114,8 +114,8 @@ class Motion {
   static bool goes_back(Joint& joint, int16_t moved, const Push& push);
   static bool runs_away(const Joint& joint, uint8_t limit);
   static int16_t follow(Joint& joint);
-  static void learn(Joint& joint, const Push& push);
-  void expect(Joint& joint, const Push& push, const Travel& travel, bool back);
+  static void learn(Joint& joint, const Push& push, int16_t way);
+  void expect(Joint& joint, const Push& push, const Travel& travel, int16_t way, bool back);
   static MotionFault hold(Joint& joint, int16_t given, int16_t error, uint8_t time);
 
   Joint joints_[joint_count] = {};
