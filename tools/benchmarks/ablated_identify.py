@@ -46,7 +46,6 @@ NEVER = 1e9
 OFF: dict[str, Any] = {
     **dict.fromkeys(("search.soft_teeth", "search.far_doubts", "search.other_optimum", "search.lossy_drivers"), NEVER),
     "search.min_closed_improvement": 1.0,
-    "search.probe_slack": NEVER,
     "windows.usual_misfit": NEVER,
     "windows.worth_a_change": 0.0,
     **dict.fromkeys(("uncertainty.mass_share", "uncertainty.length_share", "uncertainty.gap_beside_play_rad"), 0.0),

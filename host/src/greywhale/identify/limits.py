@@ -102,9 +102,6 @@ class SearchLimits:
         "of log(1 + squares over noise)",
         "its gear is fitted to short windows where they are so much better predicted then",
     )
-    probe_slack: float = limit(
-        0.04, "of the held-out misfit", "an order gets a whole fit if a short one leaves no more on top"
-    )
     other_optimum: float = limit(0.3, "of a searched number", "numbers that differ by this get a fit of their own")
     far_doubts: float = limit(
         1.645,

@@ -69,9 +69,6 @@ GEARS: tuple[dict[str, float], ...] = (
 # The gear that a joint has which swings on its teeth, but for how far these bend.
 SWINGING = {"gap": 0.0, "drag": 0.01, "teeth": 2e-3}
 SOME_WINDOWS = 20
-PROBE_STEPS = 8  # of a short fit
-# Orders of the first two turns always get a whole fit: much hangs on them.
-SURE_TURNS = (0, 1)
 ROUNDS = 2
 
 
@@ -139,13 +136,11 @@ class Search:
             assert before is not None
             extended = [(self._extend(before, order), order) for order in left]
             extended = [(one, order) for one, order in extended if not self._was_tried(one)]
-            sure = self.begin is None and number in SURE_TURNS
-            hopeful = [(one, order) for one, order in extended if sure or self._is_hopeful(one, before)]
-            if not hopeful:
+            if not extended:
                 return
-            fits = sum(len(GEARS) + 2 if order == "backlash" else 1 for _, order in hopeful)
+            fits = sum(len(GEARS) + 2 if order == "backlash" else 1 for _, order in extended)
             self.fits.begin_part(what, done, done + share / len(turn), FITS_TO_SETTLE * fits)
-            found = [self._measure(one) for one in self._fit_orders(hopeful)]
+            found = [self._measure(one) for one in self._fit_orders(extended)]
             errors = [float(one.held_out or 0.0) + self._least_gain(one) for one in found]
             winner = int(np.argmin(errors))
             self._take(found[winner])
@@ -228,15 +223,6 @@ class Search:
 
     def _was_tried(self, candidate: Candidate) -> bool:
         return any(set(one.space.names) == set(candidate.space.names) for one in self.tried)
-
-    def _is_hopeful(self, candidate: Candidate, before: Candidate) -> bool:
-        """True where a few steps on half of the windows predict the held-out part as well as the model before does."""
-        assert before.held_out is not None
-        few = WindowResidual(self.logs, self.arm, self.joints, False, 2)
-        few.settle(before.plant, before.zero)
-        return self._error(self.fits.refine(few, candidate, PROBE_STEPS)) < before.held_out * (
-            1.0 + self._limits.probe_slack
-        )
 
     def _may_follow(self, order: str) -> bool:
         """True where the best model lacks this order, and has what the order changes."""
