@@ -50,6 +50,9 @@ ORDERS: dict[str, tuple[str, ...]] = {
     "drivers that lose volts": ("lost", "uneven"),
     "ringing teeth": ("ringing",),
 }
+FIRST = ("motors", "Coulomb friction")  # every model has them
+# The quantity that an order changes.
+NEEDS = {"Stribeck friction": "coulomb", "creep": "coulomb", "ringing teeth": "teeth"}
 # What is tried after motors and Coulomb friction, one line after the other. Orders of one line explain much the same,
 # so they compete; the losers are tried again on top of the winner. An order that did not help may do so later.
 TURNS: tuple[tuple[str, ...], ...] = (
@@ -110,6 +113,8 @@ class Search:
                 self._consider_nearer()
             if self.best is before:
                 break
+        if self.begin is None:
+            self._consider_fewer()
         self._consider_knocking()
         if self.loops:
             self._consider_closed()
@@ -147,6 +152,38 @@ class Search:
             if self.best is before:
                 return
             left = [order for order in left if self._may_follow(order)]
+
+    def _consider_fewer(self) -> None:
+        """Leave out orders that later ones have made needless, one after the other."""
+        while True:
+            best = self.best
+            assert best is not None
+            assert best.held_out is not None
+            orders = [one for one in self._last_orders(best) if not self._was_tried(self._shorten(best, one))]
+            self.fits.begin_part("leaving out needless orders", 0.0, 1.0, FITS_TO_SETTLE * (len(orders) + 1))
+            fewer = self.fits.settle_each(self._fitted, [self._shorten(best, one) for one in orders], ROUGH)
+            margins = [self._least_gain_of(order) for order in orders]
+            lost = [self._error(one) - best.held_out - margin for one, margin in zip(fewer, margins, strict=True)]
+            if not lost or min(lost) > 0.0:
+                return
+            least = int(np.argmin(lost))
+            found = self._measure(self.fits.settle(self._fitted, fewer[least]))
+            if float(found.held_out or 0.0) > best.held_out + margins[least]:
+                return
+            self.best = found
+
+    def _last_orders(self, candidate: Candidate) -> list[str]:
+        """Orders of a model that none of its other orders changes."""
+        kinds = candidate.kinds
+        changed = {quantity for order, quantity in NEEDS.items() if ORDERS[order][0] in kinds}
+        present = [order for order, own in ORDERS.items() if own[0] in kinds and not changed & set(own)]
+        return [order for order in present if order not in FIRST]
+
+    def _shorten(self, candidate: Candidate, order: str) -> Candidate:
+        """Return the model without the quantities of an order."""
+        space = Space.of(self.arm, [one for one in candidate.kinds if one not in ORDERS[order]], self.joints)
+        left = [one for one in candidate.order.split(", ") if one != order]
+        return Candidate(space, space.translate(candidate.x, candidate.space), ", ".join(left) or FIRST[-1])
 
     def _consider_softer(self) -> None:
         """Look for soft teeth again where the model has found play since: play hides the swings."""
@@ -229,8 +266,7 @@ class Search:
         best = self.best
         assert best is not None
         kinds = best.kinds
-        needed = {"Stribeck friction": "coulomb", "creep": "coulomb", "ringing teeth": "teeth"}.get(order)
-        return ORDERS[order][0] not in kinds and (needed is None or needed in kinds)
+        return ORDERS[order][0] not in kinds and (order not in NEEDS or NEEDS[order] in kinds)
 
     def _consider(self, candidate: Candidate) -> None:
         self._take(self._measure(candidate))
@@ -250,7 +286,10 @@ class Search:
     def _least_gain(self, candidate: Candidate) -> float:
         """The gain that a candidate must have over the best so far."""
         new = self.best is not None and "lost" in candidate.kinds and "lost" not in self.best.kinds
-        return self._limits.lossy_drivers if new else self._limits.min_improvement
+        return self._least_gain_of("drivers that lose volts" if new else "")
+
+    def _least_gain_of(self, order: str) -> float:
+        return self._limits.lossy_drivers if order == "drivers that lose volts" else self._limits.min_improvement
 
     def _error(self, candidate: Candidate) -> float:
         return float(np.mean(self._held.settled_error(candidate.plant, candidate.zero)))
@@ -280,7 +319,7 @@ class Search:
     def _extend(self, candidate: Candidate, order: str) -> Candidate:
         """Return the model with the quantities of another order added, at their usual start."""
         space = Space.of(self.arm, (*candidate.kinds, *ORDERS[order]), self.joints)
-        name = order if candidate.order in ("motors", "Coulomb friction") else f"{candidate.order}, {order}"
+        name = order if candidate.order in FIRST else f"{candidate.order}, {order}"
         return Candidate(space, space.translate(candidate.x, candidate.space), name)
 
     def _consider_closed(self) -> None:
