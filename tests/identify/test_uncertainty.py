@@ -47,6 +47,22 @@ def test_a_gap_is_less_sure_where_play_hides_it(recorded: Recorded, hidden: ArmP
     assert variance(0.01, "gap") == variance(0.0, "gap")
 
 
+def test_friction_and_play_are_less_sure_where_a_joint_creeps(recorded: Recorded, hidden: ArmParameters) -> None:
+    """Another law of creep would take its share of them; nobody knows which law an arm has."""
+    space = Space.of(hidden, ("damping", "coulomb", "play", "creep"), (3,))
+    shares = np.array([0.1, 0.25, 0.027, 0.0])  # of the creep
+    creep = space.start()[space.names.index("joint3.creep")]
+
+    def besides(*creeping: tuple[str, float]) -> np.ndarray:
+        sure = replace(IDENTIFICATION_LIMITS.uncertainty, creeping=creeping)
+        log = prepare(recorded.fit, 1, replace(IDENTIFICATION_LIMITS, uncertainty=sure))
+        windows = WindowResidual([log], hidden, (3,), every=8)
+        return uncertainty(windows, space, space.start(), (3,), to_read=True).besides
+
+    wider = besides(("damping", 0.1), ("coulomb", 0.25), ("play", 0.027)) - besides()
+    np.testing.assert_allclose(wider, np.diag((shares * creep) ** 2), atol=1e-12)
+
+
 def test_two_numbers_of_which_only_the_sum_shows_stay_as_open_as_in_the_arm_file() -> None:
     """A driver that keeps volts in one direction alone has such numbers: the mean, and half of the difference."""
     draws = np.random.default_rng(5)

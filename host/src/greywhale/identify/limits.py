@@ -191,6 +191,12 @@ class UncertaintyLimits:
         "besides, on arms of another engine; for people, no plant is drawn with it",
         MEASURED_ON_ARMS,
     )
+    creeping: tuple[tuple[str, float], ...] = limit(
+        (("damping", 0.1), ("coulomb", 0.25), ("play", 0.027)),
+        "times the creep in rad/s",
+        "the same where a joint creeps: another law of creep takes its share of these",
+        MEASURED_ON_ARMS,
+    )
     gap_beside_play_rad: float = limit(
         1.8e-3,
         "rad, a standard deviation",

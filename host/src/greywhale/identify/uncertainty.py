@@ -115,7 +115,7 @@ def uncertainty(
         # Where a fit with other masses and lengths would end.
         moved = np.array([fit @ (residual(other, x[None])[0] - numbers[0]) for other in others])
         besides = moved.T @ moved
-        besides += np.diag(_foreign(space, limits) ** 2)
+        besides += np.diag(_foreign(space, x, limits))
     found = _describe_open(space, x, np.sqrt(np.diag(covariance + besides)), joints, limits)
     return Uncertainty(covariance, besides, condition, tuple(found), limits)
 
@@ -135,13 +135,15 @@ class _AllWindows:
         return np.concatenate([seen(space, points) for seen in self._seen], axis=1)
 
 
-def _foreign(space: Space, limits: UncertaintyLimits) -> Floats:
-    """Return the deviations by which fits of arms that no model is like are off besides, in the searched numbers."""
-    foreign, names = dict(limits.foreign), set(space.names)
-    found = np.array([foreign.get(one.kind, 0.0) for one in space.parameters])
+def _foreign(space: Space, x: Floats, limits: UncertaintyLimits) -> Floats:
+    """Return the variances by which fits of arms that no model is like are off besides, in the searched numbers."""
+    known, foreign, creeping = dict(zip(space.names, x, strict=True)), dict(limits.foreign), dict(limits.creeping)
+    found = np.zeros(len(x))
     for index, one in enumerate(space.parameters):
-        if one.kind == "gap" and f"joint{one.joint}.play" in names:
-            found[index] = limits.gap_beside_play_rad
+        usual = foreign.get(one.kind, 0.0)
+        if one.kind == "gap" and f"joint{one.joint}.play" in known:
+            usual = limits.gap_beside_play_rad
+        found[index] = usual**2 + (creeping.get(one.kind, 0.0) * known.get(f"joint{one.joint}.creep", 0.0)) ** 2
     return found
 
 
