@@ -265,7 +265,7 @@ def test_second_round_is_as_good_as_the_arm_that_it_began_with(
     if begun == "model":
         outcome.save(tmp_path / "model.toml")
         arm = load_arm(tmp_path / "model.toml")
-    more = record(hidden, alone(human_reaches(77, 6.0)), tmp_path / "more.csv", tables[0], 77)
+    more = record(hidden, alone(human_reaches(77, 12.0)), tmp_path / "more.csv", tables[0], 77)
     again = identify([more], arm, validate=[recorded.second, recorded.changed], tables=tables)
     assert not any(verdict.is_worse for verdict in again.verdicts)
     assert again.warnings == ()
