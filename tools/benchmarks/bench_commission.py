@@ -9,12 +9,14 @@ from __future__ import annotations
 
 import os
 import tempfile
+from contextlib import suppress
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from greywhale.base.errors import UserError
 from greywhale.base.study import Task
 from greywhale.files.model import arm_toml
 from greywhale.measure.limits import SWING_LIMITS
@@ -61,15 +63,16 @@ def bench_with(kind: str, seed: int, folder: Path) -> LockStepBench:
 
 
 def followed(kind: str, seed: int) -> dict[str, Any]:
-    """The arm's following before, after and, where it has traits, with `tune` alone: a Run's fields each, the wall
-    time, and the sets tried on it.
+    """The arm's following before, after and, where it has traits, with `tune` alone if that ends with a controller: a
+    Run's fields each, the wall time, and the sets tried on it.
     """
     with tempfile.TemporaryDirectory() as name, bench_with(kind, seed, Path(name)) as bench:
         done = commissioned(bench, Path(name), motions())
     found = {"before": asdict(done.before), "after": asdict(done.after), "wall_s": done.wall_s}
     if set(traits_of(kind)) & set(TRAITS):
         with tempfile.TemporaryDirectory() as name, bench_with(kind, seed, Path(name)) as bench:
-            found["tune"] = asdict(tuned(bench, Path(name), motions())[1])
+            with suppress(UserError):  # the board stopped the arm in every motion, or its model is refused
+                found["tune"] = asdict(tuned(bench, Path(name), motions())[1])
     return found | {"tried": len(done.outcome.trials.done) - 1}
 
 
