@@ -92,7 +92,10 @@ def practise(
         save_leader(leader, human_reaches(1000 + number, CHECK_SHARE * seconds))  # far from the seeds that people give
         keep(name, partial(record_motion, bench, leader, path, paper_table(controller), named(name)))
     if not logs:
-        raise UserError(f"the arm cannot be identified, because no motion came to its end; the last: {left_out[-1]}")
+        raise UserError(
+            "the arm cannot be identified, because no motion came to its end; `greywhale commission` leads an arm with "
+            f"softer gains where it swings; the last: {left_out[-1]}"
+        )
     return Practice(logs, tuple(left_out))
 
 
